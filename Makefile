@@ -146,7 +146,7 @@ languages: $(VENV)/.installed-dev verilog
 	  tests/export/test_every_keyword.py tests/export/systemverilog/test_simulation.py
 
 prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types with all constructs
-	$(BIN)/python -m firm_hdl.equivalence --jobs $(JOBS) $(PROVE_ARGS)
+	$(BIN)/python -m lab.prove --jobs $(JOBS) $(PROVE_ARGS)
 
 # Types that have every feature of all: what `make test` simulates, and `make simulate` in GHDL.
 # COVER=--check compares the files with today's features instead.

@@ -54,11 +54,13 @@ MAY_IMPORT = {
 }
 # What a user's accelerator is made of. `sim`: values of messages become transfers.
 MAY_IMPORT["accelerator"] = {"gateware", "model", "plan", "sim", "wire"}
+# `accelerator`: whole messages in place of leaves. `names`: words of C.
+MAY_IMPORT["registers"] = {"accelerator", "gateware", "model", "names", "plan"}
 MAY_IMPORT["export"] = {
     # `drawing`, `identity`, `metrics`, `sim`: datasheets show what a type is, and waveforms.
     *("firm_hdl", "errors", "files", "garbage", "jobs", "names", "rtlil", "vhdl", "verilog"),
     *("drawing", "identity", "metrics", "model", "frontend", "wire", "plan", "timing", "program"),
-    *("estimates", "gateware", "sim"),
+    *("estimates", "gateware", "registers", "sim"),
 }
 MAY_IMPORT["node"] = {
     # `terminal`: names of peers are printed. `equivalence`, `jobs`: accelerators in VHDL and
@@ -75,12 +77,15 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(MAY_IMPORT["export"] - {"estimates", "garbage", "metrics", "program", "rtlil", "timing"}),
+    *(
+        MAY_IMPORT["export"]
+        - {"estimates", "garbage", "metrics", "program", "registers", "rtlil", "timing"}
+    ),
     *("arguments", "export", "node", "recordings", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
-    *("model", "frontend", "wire", "plan", "gateware", "export", "covering"),
+    *("model", "frontend", "wire", "plan", "gateware", "export"),
 }
 MAY_IMPORT["bench"] = {
     *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),
@@ -235,57 +240,3 @@ def test_the_laboratory_is_imported_by_nobody(folder: str) -> None:
 def test_every_permission_is_used() -> None:
     assert list(unused(PACKAGE, "firm_hdl", MAY_IMPORT)) == []
     assert list(unused(PACKAGE / "verify", "verify", VERIFY_MAY_IMPORT)) == []
-
-
-def test_unused_permissions_are_found(tmp_path: Path) -> None:
-    (tmp_path / "a.py").write_text("from firm_hdl import b\n")
-    allowed: dict[str, set[str]] = {"a": {"b", "c"}, "b": {"c"}, "c": set()}
-    assert list(unused(tmp_path, "firm_hdl", allowed)) == [
-        "a does not import c",
-        "b does not import c",
-    ]
-
-
-def test_violations_are_found(tmp_path: Path) -> None:
-    files = {
-        "__init__.py": '"""Face."""\nfrom firm_hdl.export import build\n__all__ = []\n',
-        "model.py": '"""Doc."""\nimport firm_hdl.wire.cdr\n__all__ = ["x"]\n',
-        "wire/__init__.py": '"""Doc."""\n__all__ = []\n',
-        "wire/cdr.py": '"""Doc."""\nfrom firm_hdl import frontend\n__all__ = []\n',
-        "sim/a.py": '"""Doc."""\ndef f():\n    from firm_hdl.export.build import build\n'
-        "    import lab.bench\n",
-        "sim/b.py": '__all__ = ["a", *b]\n',
-        "terminal.py": '"""Doc."""\nimport firm_hdl.verify\n__all__ = []\n',
-        "utils.py": '"""Doc."""\n__all__ = []\n',
-        "gateware/__main__.py": '"""Doc."""\nimport firm_hdl\nimport os\n',
-        "verify/report/a.py": (
-            '"""Doc."""\nfrom firm_hdl.verify import accept\n__all__ = []\n'
-            "import firm_hdl.verify.results.file\nfrom firm_hdl.verify import ts3\n"
-        ),
-        "verify/ts1/known/a.py": (
-            '"""Doc."""\nimport firm_hdl.verify.ts2.golden\n__all__ = []\n'
-            "from firm_hdl.verify.ts1.known import b\nimport firm_hdl.verify.command\n"
-        ),
-        "verify/more.py": '"""Doc."""\n__all__ = []\n',
-    }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
-        (tmp_path / name).write_text(text)
-    assert list(problems(tmp_path)) == [
-        "__init__.py: firm_hdl imports export",
-        "gateware/__main__.py: gateware imports firm_hdl",
-        "model.py: model imports wire",
-        "sim/a.py: no literal __all__",
-        "sim/a.py: imports the laboratory",
-        "sim/a.py: sim imports export",
-        "sim/b.py: no docstring",
-        "sim/b.py: no literal __all__",
-        "terminal.py: terminal imports verify",
-        "utils.py: a part of the package that the architecture does not know",
-        "verify/more.py: a part of the package that the architecture does not know",
-        "verify/report/a.py: report imports ts3",
-        "verify/report/a.py: report imports verify",
-        "verify/ts1/known/a.py: ts1 imports command",
-        "verify/ts1/known/a.py: ts1 imports ts2",
-        "wire/cdr.py: wire imports frontend",
-    ]

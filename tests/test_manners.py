@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -88,20 +87,6 @@ def test_info_names_the_hardest_packet_and_long_arrays_if_there_are_any(capsys):
     assert "of the hardest packets that were tried (28 bytes, 2 beats, 3 cycles) " in polygon
     assert "of long strings or arrays" not in polygon
     assert "of long strings or arrays " in image
-
-
-def test_limitations_deny_nothing_that_verify_does(capsys):
-    with pytest.raises(SystemExit):
-        main(["verify", "--help"])
-    output = capsys.readouterr().out
-    page = (Path(__file__).parents[1] / "docs" / "reference" / "limits.md").read_text()
-    for option, denial in (
-        ("--results", r"Only \w+ keeps results"),
-        ("--bag", r"[Rr]ecorded messages are not replayed"),
-        ("--sut", r"no other client library can be"),
-    ):
-        assert option in output
-        assert not re.search(denial.replace(" ", r"\s+"), page), option
 
 
 BOOL = load_message("std_msgs/msg/Bool")

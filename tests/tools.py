@@ -21,11 +21,13 @@ def need(tool: str, path: str | None) -> str:
     return path
 
 
-def run_script(script: Path, *arguments: str, **environment: str) -> tuple[int, str]:
+def run_script(
+    script: Path, *arguments: str, folder: str | Path = "/", **environment: str
+) -> tuple[int, str]:
     """Run a shell script from another folder; return its status and all that it printed."""
     done = subprocess.run(
         ["sh", str(script), *arguments],
-        cwd="/",
+        cwd=folder,
         env={**os.environ, **environment},
         capture_output=True,
         text=True,

@@ -13,10 +13,11 @@ from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
     from firm_hdl.export.build import Built
+    from firm_hdl.export.design import BuiltDesign
     from firm_hdl.model import Message
     from firm_hdl.plan import Plan
 
-__all__ = ["add_build", "add_info", "add_plan"]
+__all__ = ["add_build", "add_info", "add_plan", "tell"]
 
 
 class _Gone(argparse.Action):
@@ -51,6 +52,12 @@ def add_build(command: argparse.ArgumentParser) -> None:
         "--datasheet",
         action="store_true",
         help="also write datasheet.html, with pictures, ports, cycles and area; --with documents",
+    )
+    command.add_argument(
+        "--registers",
+        action="store_true",
+        help="also write converters whose messages are registers on AXI4-Lite, with SystemRDL and "
+        "C headers; of fields of fixed size",
     )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
     add_jobs(command)
@@ -87,10 +94,7 @@ def _build(args: argparse.Namespace) -> None:
         nonlocal written
         written += 1
         stage("build: types", written, len(messages))
-        state = "current" if built.was_current else "wrote"
-        print(f"{state:8}{built.folder}{os.sep}", flush=True)
-        for name in built.kept:
-            print(f"kept    {built.folder / name}, which you changed", flush=True)
+        tell(built)
 
     done = build(
         args.types,
@@ -102,6 +106,7 @@ def _build(args: argparse.Namespace) -> None:
             max_message_bytes=args.max_message_bytes,
             ports=args.ports,
             extras=args.extras | ({"documents"} if args.datasheet else set()),
+            registers=args.registers,
         ),
         force=args.force,
         stimuli=packets_of,
@@ -114,6 +119,13 @@ def _build(args: argparse.Namespace) -> None:
         script = built.folder / "vhdl" / "run_ghdl.sh"
         run = f"{script} runs a test bench in GHDL; " if script.is_file() else ""
         print(f"next: {run}--with all adds SystemVerilog, scripts and a datasheet")
+
+
+def tell(built: Built | BuiltDesign, end: str = os.sep) -> None:
+    """Print the name of a folder that was built, and those of files that made way and stay."""
+    print(f"{'current' if built.was_current else 'wrote':8}{built.folder}{end}", flush=True)
+    for name in built.kept:
+        print(f"kept    {built.folder / name}, which you changed", flush=True)
 
 
 def add_plan(command: argparse.ArgumentParser) -> None:

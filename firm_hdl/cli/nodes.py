@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
+from firm_hdl.cli.building import tell
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 from firm_hdl.terminal import stage
@@ -52,6 +53,12 @@ def _add_new(command: argparse.ArgumentParser) -> None:
         "--language",
         choices=["amaranth", "vhdl", "verilog", "sv"],
         help="language of the accelerator (default: that of the description, else amaranth)",
+    )
+    command.add_argument(
+        "--ports",
+        choices=["plain", "records", "structs"],
+        help="ports of VHDL or SystemVerilog: records or structs are one for each message "
+        "(default: those of the description, else plain)",
     )
 
 
@@ -122,7 +129,10 @@ def _add_run(command: argparse.ArgumentParser) -> None:
     command.add_argument("--interface", help="network interface of rtps, such as lo")
     command.add_argument("--seconds", type=seconds, help="end after so long (default: at Ctrl-C)")
     command.add_argument(
-        "--wave", metavar="FILE", type=Path, help="write the waveform of --board sim, as VCD"
+        "--wave",
+        metavar="FILE",
+        type=Path,
+        help="write the waveform of --board sim, as VCD or FST (FILE.vcd, FILE.fst)",
     )
     add_engine(command, "--board sim")
     command.add_argument("--quiet", action="store_true", help="print no figures")
@@ -199,10 +209,16 @@ def _act(args: argparse.Namespace, description: Description) -> None:
     if args.action == "new":
         from firm_hdl.node.hdl import new_accelerator
 
-        place, value = new_accelerator(description, args.language)
+        with_records = args.ports in ("records", "structs")
+        place, value = new_accelerator(description, args.language, with_records=with_records)
         print(f"wrote   {place}")
         if not description.accelerator:
             print(f"Add this line to {args.file}:\n\naccelerator: {value}")
+        if "ports: " in value:
+            print(
+                "\nfirm-hdl adds the packages with the types itself. firm-hdl node build writes "
+                "them, too, for benches and editors."
+            )
         return
     if args.action == "run":
         from firm_hdl.node.bridge.command import run_bridge
@@ -245,21 +261,17 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 
         # What is wrong with it is found at once.
         board = None if args.target is None else read_board(args.target)
-        built = build_node(
-            description,
-            args.out,
-            force=args.force,
-            stimuli=_stimuli,
-            datasheet=args.datasheet,
-        )
-        print(f"{'current' if built.was_current else 'wrote':8}{built.folder}", flush=True)
-        for name in built.kept:
-            print(f"kept    {built.folder / name}, which you changed", flush=True)
+        options: dict[str, Any] = {"stimuli": _stimuli, "datasheet": args.datasheet}
+        built = build_node(description, args.out, force=args.force, **options)
+        tell(built, end="")
         if args.sim:
             _compile(description, args)
     print(summary(description))
     if args.action == "build" and board is not None:
         _make_bitstream(description, built, board, force=args.force)
+        if args.datasheet:
+            # It says what was reached.
+            build_node(description, args.out, **options)
     if args.action == "info" and args.members:
         from firm_hdl.node.hdl.members import members_text
 

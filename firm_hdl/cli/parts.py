@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import os
 
 from firm_hdl.arguments import add_bus_bytes, add_options, add_origins, number_between
+from firm_hdl.cli.building import tell
 from firm_hdl.cli.types import library_of
 
 __all__ = ["add_part"]
@@ -92,6 +92,4 @@ def _part(args: argparse.Namespace) -> None:
     given = {name: getattr(args, name) for name in KINDS[args.kind].parameters}
     part = make_part(args.kind, message=message, name=args.name, **given)
     built = build_part(part, args.out, force=args.force)
-    print(f"{'current' if built.was_current else 'wrote':8}{built.folder}{os.sep}", flush=True)
-    for name in built.kept:
-        print(f"kept    {built.folder / name}, which you changed", flush=True)
+    tell(built)

@@ -45,7 +45,7 @@ def add_bench(command: argparse.ArgumentParser) -> None:
 
 def add_golden(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl golden``."""
-    from firm_hdl.verify.ts2.golden_command import add_golden_arguments, run_golden
+    from firm_hdl.verify.ts2.golden import add_golden_arguments, run_golden
 
     add_golden_arguments(command)
     add_options(command)

@@ -2,9 +2,12 @@
 
 Features of a type belong to five families: the productions of the grammar that its text uses, the
 constructs of its definition, of its layout and of its plan, and the branches that the generator
-takes for it (:mod:`firm_hdl.covering.branches`). The set is chosen greedily: each step takes the
-type that adds most features per cost. The cost of the result is within a logarithmic factor of the
-smallest possible cost (Chvatal, 1979). The result is the same on every run.
+takes for it (:mod:`firm_hdl.covering.branches`). A production is a rule of the grammar with the
+kinds of its children in a parse tree, such as ``field: INT_TYPE array NAME``. Several children of
+one kind in a row count as "one or more", so that the number of productions is finite. The set is
+chosen greedily: each step takes the type that adds most features per cost. The cost of the result
+is within a logarithmic factor of the smallest possible cost (Chvatal, 1979). The result is the same
+on every run.
 """
 
 from __future__ import annotations
@@ -12,17 +15,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import groupby
+
+from lark import Token, Tree
 
 from firm_hdl.covering.branches import branches
 from firm_hdl.frontend import Library
-from firm_hdl.frontend.productions import productions
+from firm_hdl.frontend.idl.parse import idl_tree
+from firm_hdl.frontend.parse import line_trees
 from firm_hdl.model import Array, Dialect, Field, Message, Primitive, Sequence, String, closure
 from firm_hdl.plan import Plan
 from firm_hdl.plan.shape import constructs
 from firm_hdl.wire import Wire, lay_out
 from firm_hdl.wire.layout import Gap, LengthField, LoopNode, Node, RunNode, Scalar, walk
 
-__all__ = ["FAMILIES", "all_features", "choose", "cost", "features"]
+__all__ = ["FAMILIES", "all_features", "choose", "cost", "features", "productions"]
 
 FAMILIES = ("grammar", "definition", "layout", "plan", "branch")
 """The families of features. The names that `all_features` returns begin with ``family: ``."""
@@ -80,14 +87,34 @@ def _grammar(library: Library, message: Message) -> Iterator[str]:
         if each.package:
             is_idl = library.is_idl(each.name)
             language = "idl" if is_idl else each.dialect
-            for production in _productions(each.text, each.dialect, is_idl):
+            for production in productions(each.text, each.dialect, is_idl=is_idl):
                 yield f"{language} {production}"
 
 
 # By the text, which is not compared: equal messages may have been written differently.
 @cache
-def _productions(text: str, dialect: Dialect, is_idl: bool) -> frozenset[str]:
-    return productions(text, dialect, is_idl=is_idl)
+def productions(text: str, dialect: Dialect, *, is_idl: bool = False) -> frozenset[str]:
+    """List the grammar productions of a text; a part with a syntax error has none.
+
+    Parameters
+    ----------
+    text : str
+        Text of one message, or of a whole IDL file.
+    """
+    trees = idl_tree(text) if is_idl else line_trees(text, dialect)
+    return frozenset(found for tree in trees for found in _productions(tree))
+
+
+def _productions(tree: Tree[Token]) -> Iterator[str]:
+    # Iterate instead of recursing, because a tree of IDL may be deep.
+    for node in tree.iter_subtrees():
+        kinds = [_kind_of(child) for child in node.children if child is not None]
+        parts = [f"{kind}+" if len(list(same)) > 1 else kind for kind, same in groupby(kinds)]
+        yield f"{node.data}: {' '.join(parts)}".rstrip()
+
+
+def _kind_of(node: Token | Tree[Token]) -> str:
+    return node.type if isinstance(node, Token) else str(node.data)
 
 
 def _meaning(message: Message) -> Iterator[str]:

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from firm_hdl.estimates.nearest import Estimate, estimate_text, estimates_of, features_of
-from firm_hdl.estimates.parts import (
-    PartEstimate,
-    core_estimate,
-    ethernet_estimate,
-    link_estimate,
-)
+from firm_hdl.estimates.parts import part_estimate, placed_cells
 
 __all__ = [
     "Estimate",
-    "PartEstimate",
-    "core_estimate",
     "estimate_text",
     "estimates_of",
-    "ethernet_estimate",
     "features_of",
-    "link_estimate",
+    "part_estimate",
+    "placed_cells",
 ]

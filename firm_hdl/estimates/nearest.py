@@ -30,7 +30,7 @@ FEATURES = ("bits", "steps", "lengths")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Estimate:
-    """An estimate of a converter.
+    """An estimate of a converter, or of another part of a node.
 
     Attributes
     ----------
@@ -41,9 +41,10 @@ class Estimate:
     mhz : float
         Clock rate.
     type : str
-        The type that was measured.
+        The type that was measured, or which parts were.
     is_same : bool
-        Whether the measured type is the type itself, with a plan of the same features.
+        Whether the measured type is the type itself, with a plan of the same features. Parts that
+        are not converters are estimated.
     """
 
     part: str

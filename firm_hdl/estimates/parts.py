@@ -1,61 +1,84 @@
-"""The area of the parts of a node besides its converters, from a few that were measured.
+"""The area and the clock rate of the parts of a node besides its converters.
 
-All have a bus of 8 bytes and are mapped for ECP5 by Yosys; ``lab/bench/parts`` has them. A core has
-a gate for each direction that comes in, and a FIFO for each that goes out. Its area is estimated by
-the line through those of two cores, with two and with eight topics.
+An area is a sum: a constant, and a multiple of each figure of the node. ``lab/bench/parts`` has the
+parts that were measured, and the factors fit them best (least squares), within 4 %;
+``docs/explanation/performance.md`` has the table. The clock rate is that of the one part that was
+placed and routed.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from firm_hdl.estimates.nearest import Estimate
 
-__all__ = ["PartEstimate", "core_estimate", "ethernet_estimate", "link_estimate"]
+__all__ = ["part_estimate", "placed_cells"]
 
 _PART = "ECP5 LFE5U-45F-8"
-_LINKS = {"stream": (497, 681), "uart": (1878, 1910), "udp": (1687, 2048)}
-_ETHERNET = (2977, 1518)
-_CORES = {2: (1879, 2932), 8: (5550, 7917)}
-"""Look-up tables and flip-flops: of links, of the layers between UDP and a PHY with 8 ports, and of
-cores by the number of their packet memories."""
+
+_FIGURES = ("constant", "memories", "memories x bus_bytes", "bus_bytes", "peers")
+_PARTS: dict[str, tuple[str, float, dict[str, tuple[float, float]]]] = {
+    "core": (
+        "6 cores, the clock of one with 8 topics",
+        160,
+        {"constant": (746, 1284), "memories": (571, 547), "memories x bus_bytes": (3.6, 35.4)},
+    ),
+    "stream": (
+        "links of 1 and 8 bytes, the clock of 8",
+        210,
+        {"constant": (376, 426), "bus_bytes": (15.1, 31.9)},
+    ),
+    "uart": (
+        "links of 1 and 8 bytes, the clock of 8",
+        154,
+        {"constant": (1350, 1253), "bus_bytes": (64.6, 82.1)},
+    ),
+    "udp": (
+        "links of 1 and 8 bytes, the clock of 8",
+        165,
+        {"constant": (1159, 1393), "bus_bytes": (66, 81.9)},
+    ),
+    "rtps": (
+        "6 participants, the clock of one with 2 topics",
+        76.5,
+        {
+            "constant": (5996, 3493),
+            "memories": (47.3, -4.8),
+            "bus_bytes": (41.6, 44.3),
+            "peers": (47, 16.6),
+        },
+    ),
+    "ethernet udp": ("1 UDP port", 127, {"constant": (2229, 1488)}),
+    "ethernet rtps": ("3 UDP ports, 16 KiB for fragments", 127, {"constant": (2711, 1816)}),
+}
+"""What was measured, its clock rate in MHz, and the factors of look-up tables and flip-flops."""
+
+_CELLS_PER_LUT = 1.6
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PartEstimate:
-    """An estimate of a part.
+def part_estimate(name: str, *, memories: int = 0, bus_bytes: int = 0, peers: int = 0) -> Estimate:
+    """Return the area and the clock rate of a part of a node.
 
-    Attributes
+    Parameters
     ----------
-    part : str
-        FPGA and speed grade.
-    lut, ff : int
-        Look-up tables and flip-flops.
-    how : str
-        Whether they are measured.
+    name : str
+        ``core``, the kind of a link, or ``ethernet`` and that kind: the layers from UDP to a PHY.
+    memories : int
+        Packet memories of topics: one for each direction.
+    bus_bytes, peers : int
+        As in the description of the node.
     """
-
-    part: str
-    lut: int
-    ff: int
-    how: str
-
-
-def link_estimate(kind: str) -> PartEstimate | None:
-    """Return the area of a link with the memory of the default; `None` if none was measured."""
-    if kind not in _LINKS:
-        return None
-    lut, ff = _LINKS[kind]
-    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: the link with its defaults")
+    what, mhz, factors = _PARTS[name]
+    numbers = (1, memories, memories * bus_bytes, bus_bytes, peers)
+    figures = dict(zip(_FIGURES, numbers, strict=True))
+    lut, ff = (round(sum(factors[key][at] * figures[key] for key in factors)) for at in (0, 1))
+    return Estimate(part=_PART, lut=lut, ff=ff, mhz=mhz, type=what, is_same=False)
 
 
-def ethernet_estimate() -> PartEstimate:
-    """Return the area of the layers between UDP and a PHY."""
-    lut, ff = _ETHERNET
-    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: with 8 ports")
+def placed_cells(lut: int) -> int:
+    """Return how many cells of look-up tables a placed node takes.
 
-
-def core_estimate(memories: int) -> PartEstimate:
-    """Return the area of a core with so many packet memories."""
-    (few, less), (many, more) = _CORES.items()
-    share = (memories - few) / (many - few)
-    lut, ff = (round(a + share * (b - a)) for a, b in zip(less, more, strict=True))
-    return PartEstimate(part=_PART, lut=lut, ff=ff, how="estimated: cores of 2 and of 8 topics")
+    Parameters
+    ----------
+    lut : int
+        Those of logic, as in an estimate. Carry chains and memories are cells, too.
+    """
+    return 100 * round(_CELLS_PER_LUT * lut / 100)

@@ -191,7 +191,7 @@ class EthernetEdge(wiring.Component):
         else:
             came, about = ipv4.datagrams.bytes, ipv4.datagrams.header
             ends = came.valid & came.payload.end & came.payload.good
-            is_fragment = (about.offset != 0) | about.more
+            is_fragment = ~about.first | about.more
             m.d.comb += dropped.eq(ends & about.udp & is_fragment)
 
         # Requests of ARP and of an echo never come at the same time, nor do their replies.

@@ -101,15 +101,14 @@ class Reassembler(wiring.Component):
         busy = Cat(part.busy for part in parts)
 
         # Which part a fragment belongs to, as its header passes: the source is known at byte 15.
-        first, slot, chosen, gives_up = Signal(), Signal(), Signal(), Signal(2)
+        first, slot, chosen, gives_up = header.first, Signal(), Signal(), Signal(2)
         limit = Signal(range(self.memory_bytes // 8 + 1))
         at = Signal(17)
         fits = Signal()
         fragment = Signal()
         hits = same & hit
         m.d.comb += [
-            fragment.eq(header.udp & ((header.offset != 0) | header.more)),
-            first.eq(header.offset == 0),
+            fragment.eq(header.udp & (~first | header.more)),
             self.loaded.eq(Mux(slot, parts[1].check, parts[0].check)),
         ]
         with m.If(came.valid & ~came.payload.end & fragment), m.Switch(header.place):
@@ -162,9 +161,12 @@ class Reassembler(wiring.Component):
             ]
             m.d.sync += [source_left.eq(source_left - 1), source.eq(source << 8)]
 
-        ends = Signal()
+        # All bytes have come a cycle before `ends`.
+        ends, more, last = Signal(), Signal(), Signal()
         gone = Signal(2)
         m.d.sync += [
+            more.eq((at[:3] == _SOURCE_BYTES) & (at[3:] != header.offset) & check.port),
+            last.eq(check.length == at - _SOURCE_BYTES),
             ends.eq(came.valid & came.payload.end & came.payload.good & fragment),
             self.dropped.eq(gone.any()),
         ]
@@ -180,9 +182,7 @@ class Reassembler(wiring.Component):
             with m.If((source_left == 1) & (slot == k)):
                 m.d.sync += part.done.eq(1)
         with m.If(ends):
-            more = (at[:3] == _SOURCE_BYTES) & (at[3:] != header.offset) & check.port
-            last = self.right & (check.length == at - _SOURCE_BYTES)
-            good = chosen & fits & Mux(header.more, more, last)
+            good = chosen & fits & Mux(header.more, more, last & self.right)
             m.d.sync += self.dropped.eq(~good)
             for k, part in enumerate(parts):
                 with m.If(gives_up[k]):

@@ -57,7 +57,7 @@ class EchoReceiver(wiring.Component):
         m = Module()
         came, header, reply = self.datagrams.bytes, self.datagrams.header, self.reply
         byte = came.payload.data
-        in_payload, first = Signal(), Signal()
+        in_payload, first = Signal(), header.first
         count = Signal.like(reply.payload_at)
         request, room, continues = Signal(), Signal(), Signal()
         checksum = Signal(16)
@@ -67,7 +67,6 @@ class EchoReceiver(wiring.Component):
         ends, writes_sum = Signal(), Signal(3)
         m.d.comb += [
             in_payload.eq(header.place == 20),
-            first.eq(header.offset == 0),
             reply.kind.eq(Mux(first, ECHO, ECHO_REST)),
             reply.header_byte.eq(byte),
             reply.payload_at.eq(count),

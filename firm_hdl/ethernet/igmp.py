@@ -102,7 +102,7 @@ class IgmpHost(wiring.Component):
                 self.group.eq(Mux(last, 0, self.group + 1)),
                 self.pending.eq(~last),
             ]
-        valid = query & self.right & ~header.more & (header.offset == 0)
+        valid = query & self.right & ~header.more & header.first
         valid = valid & (general | Cat(ours).any()) & (header.length >= 8)
         with m.If(ends & valid):
             # A mask of ones keeps the delay within the maximum; a tick is less than a tenth.

@@ -52,6 +52,8 @@ def header_layout() -> data.StructLayout:
         Of a fragment, in units of 8 bytes.
     more : unsigned(1)
         More fragments follow.
+    first : unsigned(1)
+        `offset` is 0.
     length : unsigned(11)
         Bytes of the payload; known with the payload only.
     """
@@ -69,6 +71,7 @@ def header_layout() -> data.StructLayout:
             "identification": 16,
             "offset": 13,
             "more": 1,
+            "first": 1,
             "length": 11,
         }
     )
@@ -194,8 +197,10 @@ class Ipv4Receiver(wiring.Component):
                     m.d.sync += header.identification.eq(Cat(byte, header.identification))
                 with m.Case(6):
                     m.d.sync += [header.more.eq(byte[5]), header.offset[8:].eq(byte[:5])]
+                    m.d.sync += header.first.eq(byte[:5] == 0)
                 with m.Case(7):
                     m.d.sync += header.offset[:8].eq(byte)
+                    m.d.sync += header.first.eq(header.first & (byte == 0))
                 with m.Case(9):
                     m.d.sync += [
                         header.udp.eq(byte == UDP),
@@ -282,12 +287,11 @@ class PayloadCheck(wiring.Component):
         m = Module()
         came, header, state = self.datagrams.bytes, self.datagrams.header, self.state
         byte = came.payload.data
-        first, in_payload = Signal(), Signal()
+        first, in_payload = header.first, Signal()
         word, adds = Signal(16), Signal()
         ports = [Signal(name=f"port_{port}") for port in self.ports]
         place = Mux(in_payload, header.index, header.place)
         m.d.comb += [
-            first.eq(header.offset == 0),
             in_payload.eq(header.place == _HEADER_BYTES),
             word.eq(Mux(place[0], byte, Cat(Const(0, 8), byte))),
         ]

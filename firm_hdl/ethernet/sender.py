@@ -312,11 +312,13 @@ class FrameSender(wiring.Component):
                     m.d.sync += in_header.eq(1)
                     m.next = "HEADER"
                 with m.Elif(self.report):
-                    m.d.comb += self.reported.eq(1)
-                    m.d.sync += releases.eq(0)
-                    for number in range(len(self.groups)):
-                        with m.If(self.group == number):
-                            begin(f"report {number}")
+                    m.next = "REPORT"
+            with m.State("REPORT"):
+                m.d.comb += self.reported.eq(1)
+                m.d.sync += releases.eq(0)
+                for number in range(len(self.groups)):
+                    with m.If(self.group == number):
+                        begin(f"report {number}")
             with m.State("REPLY"):
                 with m.If(kind == ARP_REPLY):
                     begin("answer")

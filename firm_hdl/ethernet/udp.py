@@ -108,9 +108,9 @@ class UdpReceiver(wiring.Component):
         level = Signal(range(self.memory_bytes))
         waiting = Signal(range(self.most + 1))
         room, ours, ends, commit = Signal(), Signal(), Signal(), Signal()
-        is_source, in_payload = Signal(), Signal()
+        is_source, in_payload, fits, empty = Signal(), Signal(), Signal(), Signal()
         m.d.comb += [
-            ours.eq(header.udp & (header.offset == 0) & ~header.more),
+            ours.eq(header.udp & header.first & ~header.more),
             is_source.eq((header.place >= 12) & (header.place < 16)),
             in_payload.eq(header.place == 20),
             ring.write_at.eq(at),
@@ -122,6 +122,9 @@ class UdpReceiver(wiring.Component):
         ]
         m.d.sync += [
             level.eq(tail - head),
+            # All bytes have come a cycle before `ends`.
+            fits.eq(check.length == header.length),
+            empty.eq(check.length == HEADER_BYTES),
             ends.eq(came.valid & came.payload.end & came.payload.good & ours),
             self.no_port.eq(0),
             self.wrong.eq(0),
@@ -139,8 +142,7 @@ class UdpReceiver(wiring.Component):
         with m.Elif(ring.writes):
             m.d.sync += at.eq(at + 1)
         with m.If(ends):
-            right = self.right & (check.length == header.length)
-            empty = check.length == HEADER_BYTES
+            right = self.right & fits
             m.d.comb += commit.eq(check.port & right & ~empty & room)
             m.d.sync += [
                 self.no_port.eq(~check.port),
@@ -239,8 +241,9 @@ class DatagramReader(wiring.Component):
                     m.d.sync += [
                         there.eq(Cat(left != 0, there[0])),
                         last.eq(Cat(left == 1, last[0])),
-                        left.eq(left - (left != 0)),
                     ]
+                with m.If(takes):
+                    m.d.sync += left.eq(left - 1)
                 with m.If(there[1] & last[1] & out.ready):
                     m.d.comb += release.eq(1)
                     m.next = "RELEASE"
@@ -311,13 +314,15 @@ class UdpTransmitter(wiring.Component):
         total = Signal(17)
         header_done, long, moves = Signal(), Signal(), Signal()
         ended, checksum = Signal(), Signal(16)
-        from_header, from_payload = Signal(8), Signal(8)
+        from_header, following, from_payload = Signal(8), Signal(8), Signal(8)
         upper, lower = Signal(8), Signal(8)
         at_upper = Signal()
+        # A register has the byte of the header that comes next.
         with m.Switch(step):
-            for number, (place, half) in enumerate(halves):
+            for number, (place, _) in enumerate(halves):
                 with m.Case(number):
-                    m.d.comb += [slot.header_at.eq(place), from_header.eq(half)]
+                    m.d.comb += slot.header_at.eq(place)
+                    m.d.comb += following.eq(halves[(number + 1) % len(halves)][1])
         m.d.comb += [
             header_done.eq(step == len(halves)),
             slot.payload_at.eq(count),
@@ -335,6 +340,7 @@ class UdpTransmitter(wiring.Component):
         with m.FSM():
             with m.State("IDLE"):
                 m.d.sync += [count.eq(0), step.eq(0), total.eq(start), long.eq(0)]
+                m.d.sync += from_header.eq(halves[0][1])
                 with m.If(came.valid & slot.free):
                     m.next = "TAKE"
             with m.State("TAKE"):
@@ -359,6 +365,8 @@ class UdpTransmitter(wiring.Component):
                     total.eq(add_word(total, Cat(lower, upper))),
                     step.eq(step + header_moves),
                 ]
+                with m.If(header_moves):
+                    m.d.sync += from_header.eq(following)
                 with m.If(moves):
                     m.d.sync += [
                         count.eq(count + ~long),

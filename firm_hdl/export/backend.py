@@ -10,7 +10,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
@@ -24,6 +24,9 @@ from firm_hdl.program import MANY_STATES, deserializer_program, program_lines, s
 from firm_hdl.rtlil import netlist_of, rtlil_of
 from firm_hdl.rtlil.ir import Design
 
+if TYPE_CHECKING:
+    from firm_hdl.registers import MessageMap
+
 __all__ = ["BuildError", "Converters", "Output", "module_name"]
 
 
@@ -31,13 +34,13 @@ class BuildError(UserError):
     """A type cannot be built, or a folder cannot be written; the text says why."""
 
 
-def module_name(folder: str, direction: Direction) -> str:
-    """Return the name of a converter's module in Verilog.
+def module_name(folder: str, direction: Direction, *parts: str) -> str:
+    """Return the name of a converter's module in Verilog, or of a module around it.
 
     No VHDL entity has this name in any case, because simulators of both languages keep modules and
     entities in one library and look them up regardless of case.
     """
-    return f"{folder}_{direction}_verilog"
+    return "_".join([folder, direction, *parts, "verilog"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,6 +63,10 @@ class Converters:
     circuits : mapping of direction to Design
         Netlists with named ports, the source of the text in all languages. Empty until
         :meth:`make_circuits` has made them.
+    registers : mapping of direction to MessageMap
+        Registers of the message; empty if they were not asked for.
+    register_circuits : mapping of direction to Design
+        Converters with these registers.
     """
 
     message: Message
@@ -69,6 +76,8 @@ class Converters:
     inputs: Mapping[str, Any] = field(default_factory=dict)
     stimuli: Sequence[bytes] = ()
     circuits: Mapping[Direction, Design] = field(default_factory=dict)
+    registers: Mapping[Direction, MessageMap] = field(default_factory=dict)
+    register_circuits: Mapping[Direction, Design] = field(default_factory=dict)
 
     def make_circuits(self) -> dict[Direction, Design]:
         """Make the circuits. Back ends give their outermost modules other names."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.export import systemverilog, verilog, vhdl
+from firm_hdl.export import registers, systemverilog, verilog, vhdl
 from firm_hdl.export.backend import BuildError, Converters
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.manifest import (
@@ -177,6 +177,7 @@ def _converters(
             "max_message_bytes": plan.max_message_bytes,
             "ports": options.ports,
             "extras": sorted(options.extras),
+            **({"registers": True} if options.registers else {}),
         },
         "stimuli_sha256": digest("".join(f"{packet.hex()}\n" for packet in packets)),
     }
@@ -187,6 +188,7 @@ def _converters(
         options=options,
         inputs=inputs_of(facts),
         stimuli=packets,
+        registers=registers.register_maps(message, plan) if options.registers else {},
     )
 
 
@@ -241,9 +243,15 @@ def _build_one(task: _Task, force: bool) -> Built:
 
 def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dict[str, Any]]:
     """Write all files of a folder; return them and the manifest."""
-    converters = dataclasses.replace(converters, circuits=converters.make_circuits())
+    converters = dataclasses.replace(
+        converters,
+        circuits=converters.make_circuits(),
+        register_circuits=registers.register_circuits(converters),
+    )
     message, plan, extras = converters.message, converters.plan, converters.options.extras
     outputs = {"Verilog": verilog.write(converters), "VHDL": vhdl.write(converters)}
+    if converters.registers:
+        outputs["registers"] = registers.write(converters)
     if "systemverilog" in extras:
         outputs["SystemVerilog"] = systemverilog.write(converters)
     sections = {

@@ -8,16 +8,15 @@ ports, each message has a record in VHDL and a struct in SystemVerilog.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
-from pathlib import PurePath
 from typing import Any, Literal
 
-from amaranth.hdl import Fragment, Module, Shape, Value
+from amaranth.hdl import Fragment, Shape, Value
 from amaranth.hdl._xfrm import DomainCollector
 from amaranth.lib import data, wiring
-from amaranth.lib.wiring import In, Out
+from amaranth.lib.wiring import In
 
 import firm_hdl
 from firm_hdl import rtlil
@@ -27,6 +26,7 @@ from firm_hdl.export.design import (
     core_file,
     design_folder,
     inputs_of_design,
+    shared_unit,
     verilog_file,
     verilog_module,
     vhdl_folder,
@@ -39,10 +39,9 @@ from firm_hdl.export.message_ports import (
     record_files,
     struct_files,
 )
-from firm_hdl.export.top import MAX_INPUT_BITS, add_domain
+from firm_hdl.export.top import AXIS_CLOCKS, Pin, PlainTop, check_input_bits
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
-from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
 from firm_hdl.gateware.signatures import MessageSignature, packet_layout
 from firm_hdl.names.identifiers import flat_names, identifier
 from firm_hdl.plan import build_plan
@@ -152,20 +151,20 @@ class PlainPorts:
     kind : str
         What the component is, for errors, and the name of its instance.
     clocks : mapping of str to pair of str
-        Ports of each clock domain: its clock, and its synchronous reset, active low.
+        As for :class:`.PlainTop`.
     has_axis, spell : callable
         As for :func:`parts_of`; `spell` returns the path from which a port's name is made.
 
     Attributes
     ----------
-    parts : dict of str to _Part
-        By the name of the port. What has no bits has no port.
+    pins : list of Pin
+        Those of the members. What has no bits has no port.
     ports : tuple of ComponentPort
         Clocks and resets, and then the members.
 
     Raises
     ------
-    ValueError
+    UserError
         If there are more input bits than Amaranth elaborates.
     """
 
@@ -174,7 +173,7 @@ class PlainPorts:
         component: wiring.Component,
         *,
         kind: str,
-        clocks: Mapping[str, tuple[str, str]],
+        clocks: Mapping[str, tuple[str, str]] = AXIS_CLOCKS,
         has_axis: Callable[[Path], bool] = lambda path: True,
         spell: Callable[[Path], Path] = lambda path: path,
     ):
@@ -182,72 +181,41 @@ class PlainPorts:
         parts = list(parts_of(component, has_axis))
         reserved = [name for pair in clocks.values() for name in pair]
         names = flat_names((spell(part.spelled) for part in parts), reserved)
-        self.parts = {
-            names[spell(part.spelled)]: part for part in parts if part.lanes or len(part.value)
-        }
-        ports = [
+        self.pins = [
+            Pin(
+                port=ComponentPort(
+                    name=names[spell(part.spelled)],
+                    direction="in" if part.flow == In else "out",
+                    width=part.lanes or len(part.value),
+                    signed=part.value.shape().signed,
+                    member=".".join(part.path),
+                ),
+                value=part.value,
+                is_count=bool(part.lanes),
+            )
+            for part in parts
+            if part.lanes or len(part.value)
+        ]
+        outer = (
             ComponentPort(name=name, direction="in", width=1, signed=False, member=member)
             for pair in clocks.values()
             for name, member in zip(pair, ("clock", "reset, low"), strict=True)
-        ]
-        ports += [
-            ComponentPort(
-                name=name,
-                direction="in" if part.flow == In else "out",
-                width=part.lanes or len(part.value),
-                signed=part.value.shape().signed,
-                member=".".join(part.path),
-            )
-            for name, part in self.parts.items()
-        ]
-        self.ports = tuple(ports)
-        bits = sum(port.width for port in ports if port.direction == "in")
-        if bits > MAX_INPUT_BITS:
-            raise ValueError(
-                f"The {kind} has {bits} input bits, and Amaranth elaborates at most "
-                f"{MAX_INPUT_BITS}"
-            )
+        )
+        self.ports: tuple[ComponentPort, ...] = (*outer, *(pin.port for pin in self.pins))
+        check_input_bits(f"The {kind}", self.ports)
 
 
-class ComponentTop(wiring.Component):
+class ComponentTop(PlainTop):
     """A component with ports of plain vectors. It adds neither registers nor latency.
 
-    On an input, ``tkeep`` is a contiguous run of ones from lane 0, and only its value in the last
-    beat of a packet matters.
-
-    Parameters
-    ----------
-    plain : PlainPorts
-    inside : elaboratable or None
-        The component, if it was elaborated already.
+    `inside` is the component, if it was elaborated already.
     """
 
-    def __init__(self, plain: PlainPorts, inside: Any = None):
-        self.plain = plain
-        self.inside = plain.component if inside is None else inside
-        flows = {"in": In, "out": Out}
-        super().__init__(
-            {
-                port.name: flows[port.direction](Shape(port.width, port.signed))
-                for port in plain.ports
-            }
-        )
+    is_closed = False
 
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        for name, (clock, reset) in self.plain.clocks.items():
-            add_domain(m, name, getattr(self, clock), getattr(self, reset))
-        m.submodules[self.plain.kind] = self.inside
-        for name, part in self.plain.parts.items():
-            port = getattr(self, name)
-            if not part.lanes:
-                m.d.comb += part.value.eq(port) if part.flow == In else port.eq(part.value)
-            elif part.flow == Out:
-                m.d.comb += port.eq(keep_of_count(part.value, part.lanes))
-            else:
-                last = getattr(self, name.removesuffix("tkeep") + "tlast")
-                m.d.comb += part.value.eq(count_of_keep(m, port, last))
-        return m
+    def __init__(self, plain: PlainPorts, inside: Any = None):
+        inside = plain.component if inside is None else inside
+        super().__init__(inside, plain.kind, plain.ports, plain.pins, plain.clocks)
 
 
 def _messages(signature: Any, path: Path = ()) -> Iterator[FoundMessage]:
@@ -321,10 +289,7 @@ def build_component(
     with search_put_off():
         fragment = Fragment.get(component, None)
         clocks = _clocks(fragment)
-        try:
-            plain = PlainPorts(component, kind="design", clocks=clocks)
-        except ValueError as error:
-            raise UserError(str(error)) from None
+        plain = PlainPorts(component, kind="design", clocks=clocks)
         circuit = rtlil.rtlil_of(ComponentTop(plain, fragment), name=name)
     reason = "The component has no messages"
     messages = []
@@ -349,7 +314,11 @@ def build_component(
             structs = struct_files(
                 name, module, plain.ports, messages, kind="design", header=header
             )
-        _check_units(name, vhdl.top, vhdl.files, records, structs)
+        if vhdl.top != name:
+            raise UserError(f"The VHDL of every design uses the name '{name}' itself")
+        owners = {"The design": vhdl.files, "its messages": records, "its structs": structs}
+        if shared := shared_unit(owners):
+            raise UserError(f"{shared}; give the design another name")
         files = {**vhdl.files, **records}
         return {
             **verilog_file(netlist, name=name, header=header),
@@ -372,18 +341,3 @@ def build_component(
         make_files=make_files,
         force=force,
     )
-
-
-def _check_units(name: str, top: str, *files: Mapping[str, str]) -> None:
-    """Refuse a name if two design units would have one name; VHDL ignores case."""
-    if top != name:
-        raise UserError(f"The VHDL of every design uses the name '{name}' itself")
-    units: Sequence[str] = [
-        PurePath(file).stem.lower()
-        for texts in files
-        for file in texts
-        if file.endswith((".vhd", ".sv"))
-    ]
-    for unit in units:
-        if units.count(unit) > 1:
-            raise UserError(f"Two units would have the name '{unit}'; give the design another name")

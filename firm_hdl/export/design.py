@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import firm_hdl
@@ -20,6 +20,7 @@ __all__ = [
     "core_file",
     "design_folder",
     "inputs_of_design",
+    "shared_unit",
     "verilog_file",
     "verilog_module",
     "vhdl_folder",
@@ -130,6 +131,21 @@ def core_file(
     sections = change(sections) if change else sections
     version = firm_hdl.__version__
     return {f"{name}.core": core(f"firm-hdl:{kind}:{name}:{version}", description, **sections)}
+
+
+def shared_unit(files: Mapping[str, Iterable[str]]) -> str:
+    """Say which design unit two parts of a design would both have; empty if there is none.
+
+    VHDL ignores the case of names (IEEE Std 1076-2008, 15.4.2), and units of VHDL and of
+    SystemVerilog may be in one library. So the names of all of them differ in more than case.
+    `files` has the names of files by the part, such as ``"its messages"``.
+    """
+    owners: dict[str, str] = {}
+    for owner, names in files.items():
+        for unit in (PurePath(each).stem for each in names if each.endswith((".vhd", ".sv"))):
+            if (first := owners.setdefault(unit.lower(), owner)) != owner:
+                return f"{first} and {owner} would both have a unit with the name '{unit}'"
+    return ""
 
 
 def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:

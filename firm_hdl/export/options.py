@@ -37,6 +37,8 @@ class Options:
         not support them.
     extras : frozenset of str
         Some of :data:`EXTRAS`.
+    registers : bool
+        Also write converters with registers on AXI4-Lite.
     """
 
     wire: Wire | None = None
@@ -44,3 +46,4 @@ class Options:
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
     ports: Ports = "records"
     extras: frozenset[Extra] = frozenset()
+    registers: bool = False

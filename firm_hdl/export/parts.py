@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Value
+from amaranth.hdl import Cat, Value
 from amaranth.lib import wiring
 
 import firm_hdl
@@ -28,10 +28,8 @@ from firm_hdl.export.design import (
     vhdl_folder,
     write_design,
 )
-from firm_hdl.export.top import MAX_INPUT_BITS, Port, add_domain, port_members
+from firm_hdl.export.top import AXIS_CLOCKS, Pin, PlainTop, Port, check_input_bits
 from firm_hdl.garbage import search_put_off
-from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
-from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.packets import (
     GateStatus,
     Outcome,
@@ -51,34 +49,17 @@ from firm_hdl.vhdl.names import legal
 __all__ = ["KINDS", "Kind", "Part", "PartTop", "build_part", "make_part", "part_ports"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Pin:
-    """A port, and what it is connected to in the part.
-
-    Attributes
-    ----------
-    port : Port
-    value : Value
-    is_count : bool
-        The port is `tkeep`, and `value` is the number of bytes.
-    """
-
-    port: Port
-    value: Value
-    is_count: bool = False
-
-
-def _in(name: str, value: Value, meaning: str) -> _Pin:
+def _in(name: str, value: Value, meaning: str) -> Pin:
     port = Port(name=name, direction="in", width=len(value), meaning=meaning)
-    return _Pin(port=port, value=value)
+    return Pin(port=port, value=value)
 
 
-def _out(name: str, value: Value, meaning: str, width: int | None = None) -> _Pin:
+def _out(name: str, value: Value, meaning: str, width: int | None = None) -> Pin:
     bits = len(value) if width is None else width
-    return _Pin(port=Port(name=name, direction="out", width=bits, meaning=meaning), value=value)
+    return Pin(port=Port(name=name, direction="out", width=bits, meaning=meaning), value=value)
 
 
-def _packets(base: str, stream: Any, is_input: bool = True) -> Iterator[_Pin]:
+def _packets(base: str, stream: Any, is_input: bool = True) -> Iterator[Pin]:
     beat = stream.payload
     forward, backward = (_in, _out) if is_input else (_out, _in)
     data = Value.cast(beat.data)
@@ -89,7 +70,7 @@ def _packets(base: str, stream: Any, is_input: bool = True) -> Iterator[_Pin]:
         width=len(beat.data),
         meaning="Valid bytes, from lane 0 on; all ones except in the last beat.",
     )
-    yield _Pin(port=keep, value=beat.count, is_count=True)
+    yield Pin(port=keep, value=beat.count, is_count=True)
     yield forward(f"{base}_tlast", beat.last, "Last beat of the packet.")
     yield forward(f"{base}_tvalid", stream.valid, "beat: valid.")
     yield backward(f"{base}_tready", stream.ready, "beat: ready.")
@@ -98,7 +79,7 @@ def _packets(base: str, stream: Any, is_input: bool = True) -> Iterator[_Pin]:
 _BESIDE = "What travels beside the beat."
 
 
-def _through(block: Any) -> Iterator[_Pin]:
+def _through(block: Any) -> Iterator[Pin]:
     yield from _packets("s_axis", block.packets_in)
     yield from _packets("m_axis", block.packets_out, False)
     if "side_in" in block.signature.members:
@@ -106,7 +87,7 @@ def _through(block: Any) -> Iterator[_Pin]:
         yield _out("m_axis_tuser", block.side_out, _BESIDE)
 
 
-def _counters(block: Any) -> Iterator[_Pin]:
+def _counters(block: Any) -> Iterator[Pin]:
     for name in block.counters.shape().members:
         value = Value.cast(block.counters[name])
         yield _out(f"count_{name}", value, f"Number of packets: {name}.")
@@ -115,7 +96,7 @@ def _counters(block: Any) -> Iterator[_Pin]:
 _SIZE = "Bytes of the packet on m_axis."
 
 
-def _gate(block: Any) -> Iterator[_Pin]:
+def _gate(block: Any) -> Iterator[Pin]:
     yield from _through(block)
     yield _out("packet_bytes", block.size, _SIZE)
     status = block.status
@@ -127,7 +108,7 @@ def _gate(block: Any) -> Iterator[_Pin]:
     yield from _counters(block)
 
 
-def _fifo(block: Any) -> Iterator[_Pin]:
+def _fifo(block: Any) -> Iterator[Pin]:
     yield from _packets("s_axis", block.packets_in)
     yield from _packets("m_axis", block.packets_out, False)
     drop = "With tlast: drop the packet."
@@ -144,7 +125,7 @@ def _fifo(block: Any) -> Iterator[_Pin]:
     yield from _counters(block)
 
 
-def _arbiter(block: Any) -> Iterator[_Pin]:
+def _arbiter(block: Any) -> Iterator[Pin]:
     for number, stream in enumerate(block.packets_in):
         yield from _packets(f"s_axis_{number}", stream)
         if block.side_bits:
@@ -155,7 +136,7 @@ def _arbiter(block: Any) -> Iterator[_Pin]:
         yield _out("m_axis_tuser", block.side_out, _BESIDE)
 
 
-def _router(block: Any) -> Iterator[_Pin]:
+def _router(block: Any) -> Iterator[Pin]:
     yield from _packets("s_axis", block.packets_in)
     yield _in("s_axis_tdest", block.topic, "With a first beat: number of the packet's output.")
     if block.side_bits:
@@ -193,10 +174,8 @@ class Kind:
     component: Callable[..., wiring.Component]
     parameters: tuple[str, ...]
     in_name: tuple[str, ...]
-    pins: Callable[[Any], Iterator[_Pin]]
-    clocks: Mapping[str, tuple[str, str]] = field(
-        default_factory=lambda: {"sync": ("aclk", "aresetn")}
-    )
+    pins: Callable[[Any], Iterator[Pin]]
+    clocks: Mapping[str, tuple[str, str]] = field(default_factory=lambda: AXIS_CLOCKS)
     codes: Any = None
 
 
@@ -279,7 +258,7 @@ class Part:
         """Ports of each clock domain: its clock, and its reset, active low."""
         return KINDS[self.kind].clocks
 
-    def pins(self) -> list[_Pin]:
+    def pins(self) -> list[Pin]:
         """List the pins; a value without bits has none."""
         return [pin for pin in KINDS[self.kind].pins(self.component) if pin.port.width]
 
@@ -336,50 +315,18 @@ def part_ports(part: Part) -> tuple[Port, ...]:
         for name, meaning in zip(names, texts, strict=True)
     ]
     ports += [pin.port for pin in part.pins()]
-    bits = sum(port.width for port in ports if port.direction == "in")
-    if bits > MAX_INPUT_BITS:
-        raise UserError(
-            f"The part has {bits} input bits, and Amaranth elaborates at most {MAX_INPUT_BITS}"
-        )
+    check_input_bits("The part", ports)
     return tuple(ports)
 
 
-class PartTop(Component):
+class PartTop(PlainTop):
     """A packet part with ports of plain vectors. It adds neither registers nor latency.
 
-    On an input, `tkeep` is a contiguous run of ones from lane 0, and only its value in the last
-    beat of a packet matters.
-
-    Parameters
-    ----------
-    part : Part
-
-    Members
-    -------
-    As :func:`part_ports` lists them.
+    Its members are as :func:`part_ports` lists them.
     """
 
     def __init__(self, part: Part):
-        self.part = part
-        super().__init__(port_members(part_ports(part)))
-
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        for name, (clock, reset) in self.part.clocks.items():
-            add_domain(m, name, getattr(self, clock), getattr(self, reset))
-        m.submodules.part = self.part.component
-        for pin in self.part.pins():
-            port = getattr(self, pin.port.name)
-            if pin.port.direction == "in":
-                if pin.is_count:
-                    last = getattr(self, pin.port.name.replace("tkeep", "tlast"))
-                    port = count_of_keep(m, port, last)
-                m.d.comb += pin.value.eq(port)
-            elif pin.is_count:
-                m.d.comb += port.eq(keep_of_count(pin.value, len(port)))
-            else:
-                m.d.comb += port.eq(pin.value)
-        return m
+        super().__init__(part.component, "part", part_ports(part), part.pins(), part.clocks)
 
 
 def build_part(

@@ -7,7 +7,7 @@ manifest repeats.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ from amaranth.hdl import ClockDomain, Module, Shape, Signal, Value
 from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.errors import UserError
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
 from firm_hdl.gateware.component import Component
@@ -26,12 +27,16 @@ from firm_hdl.names.identifiers import flat_names
 from firm_hdl.plan import DIRECTIONS, Direction, Leaf, Plan
 
 __all__ = [
+    "AXIS_CLOCKS",
     "DIRECTIONS",
     "MAX_INPUT_BITS",
     "Direction",
+    "Pin",
+    "PlainTop",
     "Port",
     "Top",
     "add_domain",
+    "check_input_bits",
     "field_of",
     "leaf_members",
     "leaf_names",
@@ -41,6 +46,9 @@ __all__ = [
 
 MAX_INPUT_BITS = MAX_CELL_BITS
 """Largest number of input bits of a design, because Amaranth makes one cell of all inputs."""
+
+AXIS_CLOCKS: Mapping[str, tuple[str, str]] = {"sync": ("aclk", "aresetn")}
+"""Clock and reset of a design with one clock domain."""
 
 # Names that no leaf may have. A leaf's ports are its name with ``_data``, ``_last`` and so on, and
 # these must not be names of packet or status ports.
@@ -190,13 +198,92 @@ def _meaning(leaf: Leaf) -> str:
     return f"{leaf}: {leaf.type} ({form})."
 
 
-class Top(Component):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pin:
+    """A port, and the value behind it.
+
+    Attributes
+    ----------
+    port : Port
+        Its name, direction, width and sign count.
+    value : Value
+    is_count : bool
+        The port is `tkeep`, and `value` is the number of bytes.
+    """
+
+    port: Any
+    value: Value
+    is_count: bool = False
+
+
+def check_input_bits(what: str, ports: Iterable[Any]) -> None:
+    """Refuse a design with more input bits than Amaranth elaborates.
+
+    Raises
+    ------
+    UserError
+    """
+    bits = sum(port.width for port in ports if port.direction == "in")
+    if bits > MAX_INPUT_BITS:
+        raise UserError(
+            f"{what} has {bits} input bits, and Amaranth elaborates at most {MAX_INPUT_BITS}"
+        )
+
+
+class PlainTop(Component):
+    """A component with ports of plain vectors. It adds neither registers nor latency.
+
+    On an input, ``tkeep`` is a contiguous run of ones from lane 0, and only its value in the last
+    beat of a packet matters.
+
+    Parameters
+    ----------
+    inside : elaboratable
+        The component.
+    name : str
+        Name of its instance.
+    ports : iterable of Port
+    pins : iterable of Pin
+        Those of all ports but clocks and resets.
+    clocks : mapping of str to pair of str
+        Ports of each clock domain: its clock, and its synchronous reset, active low.
+    """
+
+    def __init__(
+        self,
+        inside: Any,
+        name: str,
+        ports: Iterable[Any],
+        pins: Iterable[Pin],
+        clocks: Mapping[str, tuple[str, str]] = AXIS_CLOCKS,
+    ):
+        self._inside, self._name, self._pins, self._clocks = inside, name, list(pins), clocks
+        super().__init__(port_members(ports))
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        for name, (clock, reset) in self._clocks.items():
+            add_domain(m, name, getattr(self, clock), getattr(self, reset))
+        m.submodules[self._name] = self._inside
+        for pin in self._pins:
+            name, value = pin.port.name, getattr(self, pin.port.name)
+            if pin.port.direction == "out":
+                source = keep_of_count(pin.value, pin.port.width) if pin.is_count else pin.value
+                m.d.comb += value.eq(source)
+            elif pin.is_count:
+                last = getattr(self, f"{name.removesuffix('keep')}last")
+                m.d.comb += pin.value.eq(count_of_keep(m, value, last))
+            else:
+                m.d.comb += pin.value.eq(value)
+        return m
+
+
+class Top(PlainTop):
     """A converter with AXI4-Stream on its packet side and named ports on its message side.
 
     The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
-    rising edge of `aclk`; one cycle of reset discards all packets and messages inside. On the input
-    side, ``tkeep`` is a contiguous run of ones from lane 0, and only its value in the last beat of
-    a packet matters. A last beat without any ones adds no bytes, so it can end an empty packet.
+    rising edge of `aclk`; one cycle of reset discards all packets and messages inside. A last beat
+    without any ones in ``tkeep`` adds no bytes, so it can end an empty packet.
 
     Parameters
     ----------
@@ -223,52 +310,31 @@ class Top(Component):
             "deserializer" if isinstance(core, Deserializer) else "serializer"
         )
         self.ports = ports_of(core.plan, self.direction)
-        super().__init__(port_members(self.ports))
+        super().__init__(core, "core", self.ports, self._connected())
 
-    def elaborate(self, platform: object) -> Module:
-        m = Module()
-        add_domain(m, "sync", self.aclk, self.aresetn)
-        m.submodules.core = self.core
-        if self.direction == "deserializer":
-            self._packets_in(m)
-        else:
-            self._packets_out(m)
-        m.d.comb += [
-            self.m_axis_status_tdata.eq(Value.cast(self.core.status.payload)),
-            self.m_axis_status_tvalid.eq(self.core.status.valid),
-            self.core.status.ready.eq(self.m_axis_status_tready),
-        ]
-        leaves = dict(leaf_members(self.core.message, self.core.tree))
-        for port in self.ports:
-            if port.leaf is not None:
-                inner, outer = leaves[port.leaf][port.member], getattr(self, port.name)
-                m.d.comb += inner.eq(outer) if port.direction == "in" else outer.eq(inner)
-        return m
-
-    def _packets_in(self, m: Module) -> None:
-        packets = self.core.packets
-        m.d.comb += [
-            Value.cast(packets.payload.data).eq(self.s_axis_tdata),
-            packets.payload.count.eq(count_of_keep(m, self.s_axis_tkeep, self.s_axis_tlast)),
-            packets.payload.last.eq(self.s_axis_tlast),
-            packets.valid.eq(self.s_axis_tvalid),
-            self.s_axis_tready.eq(packets.ready),
-        ]
-
-    def _packets_out(self, m: Module) -> None:
-        packets = self.core.packets
-        lanes = self.core.plan.bus_bytes
-        m.d.comb += [
-            self.m_axis_tdata.eq(Value.cast(packets.payload.data)),
-            self.m_axis_tkeep.eq(keep_of_count(packets.payload.count, lanes)),
-            self.m_axis_tlast.eq(packets.payload.last),
-            self.m_axis_tuser.eq(self.core.packet_error),
-            self.m_axis_tvalid.eq(packets.valid),
-            packets.ready.eq(self.m_axis_tready),
-        ]
+    def _connected(self) -> Iterator[Pin]:
+        core: Any = self.core
+        beat, base = core.packets.payload, self.ports[2].name.removesuffix("_tdata")
+        values = {
+            f"{base}_tdata": beat.data,
+            f"{base}_tkeep": beat.count,
+            f"{base}_tlast": beat.last,
+            f"{base}_tuser": None if base == "s_axis" else core.packet_error,
+            f"{base}_tvalid": core.packets.valid,
+            f"{base}_tready": core.packets.ready,
+            "m_axis_status_tdata": core.status.payload,
+            "m_axis_status_tvalid": core.status.valid,
+            "m_axis_status_tready": core.status.ready,
+        }
+        leaves = dict(leaf_members(core.message, core.tree))
+        # Leaves come last in the text of the circuit.
+        for port in sorted(self.ports[2:], key=lambda port: port.leaf is not None):
+            leaf = port.leaf
+            value = values[port.name] if leaf is None else leaves[leaf][port.member]
+            yield Pin(port=port, value=Value.cast(value), is_count=port.name == f"{base}_tkeep")
 
 
-def port_members(ports: Iterable[Port]) -> dict[str, Any]:
+def port_members(ports: Iterable[Any]) -> dict[str, Any]:
     """Return the members of a component with such ports."""
     flows = {"in": In, "out": Out}
     return {port.name: flows[port.direction](Shape(port.width, port.signed)) for port in ports}

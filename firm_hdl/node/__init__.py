@@ -20,7 +20,6 @@ __all__ = [
     "Description",
     "Link",
     "Node",
-    "Qos",
     "Store",
     "Topic",
     "TopicQos",
@@ -28,9 +27,6 @@ __all__ = [
     "read_description",
     "read_description_text",
 ]
-
-Qos = TopicQos
-"""The old name of :class:`TopicQos`; `firm_hdl.rtps` has another `Qos`."""
 
 # Import lazily: Amaranth takes seconds to import, and a host does not need it.
 _HOME = {"Node": "node", "accelerator_signature": "accelerator"}

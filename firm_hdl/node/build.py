@@ -6,7 +6,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import PurePath
+from pathlib import Path
+from typing import Any
 
 import firm_hdl
 from firm_hdl import rtlil
@@ -17,11 +18,13 @@ from firm_hdl.export.design import (
     core_file,
     design_folder,
     inputs_of_design,
+    shared_unit,
     verilog_file,
     verilog_module,
     vhdl_folder,
     write_design,
 )
+from firm_hdl.export.folder import read_manifest
 from firm_hdl.export.manifest import digest
 from firm_hdl.export.message_ports import (
     RecordPort,
@@ -43,13 +46,13 @@ from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["build_node", "check_units"]
+__all__ = ["build_node", "check_units", "placed_on"]
 
 SUMMARY = "summary.txt"
 DATASHEET = "datasheet.html"
 
 _OF_VHDL = ("_tb.vhd", "firm_hdl_bench_pkg.vhd", "bench_files.txt", "run_ghdl.sh")
-_OF_VERILOG = ("_tb.v", "run_iverilog.sh")
+_OF_VERILOG = ("_tb.v", "run_iverilog.sh", "run_verilator.sh")
 """How files of benches end, by the language of the simulator."""
 
 _UNDRIVEN = """
@@ -83,7 +86,7 @@ def build_node(
         Returns good packets of a type for the test benches. `None`: these send control messages
         only.
     datasheet : bool
-        Write the datasheet, too.
+        Write the datasheet, too. It has the figures of bitstreams that are in the folder.
 
     Raises
     ------
@@ -97,10 +100,7 @@ def build_node(
         name += "_node"
     folder = design_folder(out, name)
     node = Node(description)
-    try:
-        ports = node_ports(node)
-    except ValueError as error:
-        raise UserError(str(error)) from None
+    ports = node_ports(node)
     has_accelerator = node.accelerator is not None
     messages: Sequence[RecordPort] = ()
     reason = "The accelerator takes all messages" if has_accelerator else ""
@@ -115,6 +115,8 @@ def build_node(
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
     own = accelerator_files(description, node.accelerator)
     facts = facts_of(description)
+    accelerator = {f: digest(t) for f, t in {**own.texts, **own.headers}.items()}
+    placed = placed_on(folder, digest(circuit), accelerator) if datasheet else None
     return write_design(
         folder,
         inputs=inputs_of_design(
@@ -123,10 +125,8 @@ def build_node(
                 "facts": facts,
                 # The accelerator's code is part of the circuit; packets of the benches are not.
                 "frames_sha256": None if script is None else digest(script.text),
-                "accelerator_files": {
-                    f: digest(t) for f, t in {**own.texts, **own.headers}.items()
-                },
-                **({"datasheet": True} if datasheet else {}),
+                "accelerator_files": accelerator,
+                **({} if placed is None else {"datasheet": placed}),
             },
             circuit,
         ),
@@ -134,13 +134,13 @@ def build_node(
             **facts,
             "records": record_facts(name, messages, reason),
             "accelerator_files": own.facts(),
-            "bench": None if script is None else _bench(name, own.language),
+            "bench": None if script is None else _bench(name, own),
             "clock": "aclk",
             "reset": "aresetn",
         },
         ports=[asdict(port) for port in ports],
         make_files=lambda: _files(
-            description, name, circuit, ports, messages, script, own, datasheet=datasheet
+            description, name, circuit, ports, messages, script, own, placed=placed
         ),
         force=force,
     )
@@ -155,7 +155,7 @@ def _files(
     script: LinkScript | None,
     own: AcceleratorFiles,
     *,
-    datasheet: bool,
+    placed: Mapping[str, Any] | None,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -188,20 +188,25 @@ def _files(
             vhdl_files=list(vhdl),
             header=header,
             more=list(own.texts),
+            verilog_tool=own.verilog_tool,
         )
         # A simulator reads one language.
         other = () if not own.language else _OF_VERILOG if is_vhdl else _OF_VHDL
         benches = {file: text for file, text in benches.items() if not file.endswith(other)}
     owners = {"the node": node.files, "its messages": records, "its structs": structs}
     if own.language:
-        owners[_ACCELERATOR] = {f"{own.entity}.vhd": ""}
+        # With records, also its packages and the wrapper; files of the user's have other names.
+        around = {file for file in own.texts if file.count("/") == 1 and own.wrapper}
+        owners[_ACCELERATOR] = {f"{own.entity}.vhd": "", **dict.fromkeys(around, "")}
     check_units(description, name, top=node.top, files={**owners, "its benches": benches})
     documents: dict[str, str] = {}
-    if datasheet:
+    if placed is not None:
         # Not before it is asked for: it imports much.
         from firm_hdl.node.datasheet import node_datasheet
 
-        page = node_datasheet(description, name, ports, module=module, vhdl_ports=vhdl_ports)
+        page = node_datasheet(
+            description, name, ports, module=module, vhdl_ports=vhdl_ports, placed=placed
+        )
         documents[DATASHEET] = page
     return {
         **verilog_file(netlist, name=name, header=header),
@@ -224,7 +229,28 @@ def _files(
     }
 
 
-def _bench(name: str, language: str) -> dict[str, str]:
+def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict[str, Any]:
+    """Return figures of the bitstreams of a circuit, by the name of the board.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder of the node.
+    design : str
+        SHA-256 of the circuit.
+    accelerator : mapping of str to str
+        SHA-256 of the files of its accelerator.
+    """
+    found = {place.name: read_manifest(place) or {} for place in folder.glob("boards/*")}
+    of = {"design_sha256": design, "accelerator_files": accelerator}
+    return {
+        board: {key: each["bitstream"][key] for key in ("cells", "clocks", "tools")}
+        for board, each in sorted(found.items())
+        if each.get("bitstream") and of.items() <= each["inputs"].items()
+    }
+
+
+def _bench(name: str, own: AcceleratorFiles) -> dict[str, str]:
     """Describe the benches for the manifest: those that read the language of the accelerator."""
     vhdl = {
         "vhdl": f"{name}_tb",
@@ -234,26 +260,22 @@ def _bench(name: str, language: str) -> dict[str, str]:
     verilog = {
         "verilog": f"{name}_tb",
         "verilog_file": f"{name}_tb.v",
-        "run_iverilog": "run_iverilog.sh",
+        f"run_{own.verilog_tool}": f"run_{own.verilog_tool}.sh",
     }
     return {
         "frames": FRAMES,
-        **(vhdl if language in ("", "vhdl") else {}),
-        **(verilog if language != "vhdl" else {}),
+        **(vhdl if own.language in ("", "vhdl") else {}),
+        **(verilog if own.language != "vhdl" else {}),
     }
 
 
-_SUFFIXES = (".vhd", ".sv")
 _ACCELERATOR = "its accelerator"
 
 
 def check_units(
     description: Description, name: str, *, top: str, files: Mapping[str, Iterable[str]]
 ) -> None:
-    """Refuse a name of a node if two design units would have one name.
-
-    VHDL ignores the case of names (IEEE Std 1076-2008, 15.4.2), and units of VHDL and of
-    SystemVerilog may be in one library. So the names of all of them differ in more than case.
+    """Refuse a name of a node if two design units would have one name; see `shared_unit`.
 
     Parameters
     ----------
@@ -262,8 +284,6 @@ def check_units(
     top : str
         Name that this entity has in VHDL.
     files : mapping of str to iterable of str
-        Names of files by what they belong to, such as ``"the messages"``. Those with another
-        suffix than ``.vhd`` and ``.sv`` do not count.
 
     Raises
     ------
@@ -272,17 +292,12 @@ def check_units(
     """
     if top != name:
         raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")
-    owners: dict[str, str] = {}
-    for owner, names in files.items():
-        for unit in (PurePath(each).stem for each in names if each.endswith(_SUFFIXES)):
-            first = owners.setdefault(unit.lower(), owner)
-            if first != owner:
-                what = f"{first} and {owner} would both have a unit with the name '{unit}'"
-                if _ACCELERATOR in (first, owner):
-                    message = f"{what}; give the entity of the accelerator another name"
-                    span = description.accelerator_span
-                    raise DefinitionError([Diagnostic(message=message, span=span)])
-                raise _refused(description, what)
+    if what := shared_unit(files):
+        if _ACCELERATOR in what:
+            message = f"{what}; give the entity of the accelerator another name"
+            span = description.accelerator_span
+            raise DefinitionError([Diagnostic(message=message, span=span)])
+        raise _refused(description, what)
 
 
 def _refused(description: Description, reason: str) -> DefinitionError:

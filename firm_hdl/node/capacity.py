@@ -13,6 +13,7 @@ __all__ = ["bytes_on_link", "link_bytes_per_second", "most_bytes", "rate_problem
 
 _WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
 _MOST_NAMED = 8
+_GIGABIT_BYTES_PER_SECOND = 125e6
 _MII_BYTES_PER_SECOND = 12.5e6
 _MOST_FRAGMENTS = 1 << 16
 # Bytes of an RTPS datagram besides the payload: of a reply, with padding; of what peers send.
@@ -52,6 +53,8 @@ def link_bytes_per_second(description: Description) -> float:
         return link.baud / 10
     if link.ethernet == "mii":
         return _MII_BYTES_PER_SECOND
+    if link.has_ethernet:
+        return min(description.clock_hz, _GIGABIT_BYTES_PER_SECOND)
     words = link.kind in ("udp", "rtps")
     return description.clock_hz * (link.data_bytes if words else description.bus_bytes)
 

@@ -9,18 +9,26 @@ from typing import Any
 
 import firm_hdl
 from firm_hdl.drawing.svg import Figure
-from firm_hdl.estimates import core_estimate, ethernet_estimate, link_estimate
+from firm_hdl.estimates import placed_cells
 from firm_hdl.export.component import ComponentPort
-from firm_hdl.export.datasheet import render, size_text, sums_of
-from firm_hdl.export.facts import definitions_of
+from firm_hdl.export.datasheet import how_text, render, size_text, sums_of
 from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
 from firm_hdl.export.datasheet.steps import plan_figure
+from firm_hdl.export.facts import definitions_of
 from firm_hdl.export.datasheet.waves import waves_of
 from firm_hdl.export.vhdl.wrapper import instance
-from firm_hdl.node.description import SERVICE_PARTS, Description, Store
+from firm_hdl.node.description import Description, Store
 from firm_hdl.node.frame import HEADER
-from firm_hdl.node.summary import clock_needed, facts_of, memory_bytes, warnings_of
+from firm_hdl.node.summary import (
+    area_of,
+    clock_needed,
+    facts_of,
+    kind_of,
+    memory_bytes,
+    parts_of,
+    warnings_of,
+)
 from firm_hdl.wire import lay_out
 
 __all__ = ["node_datasheet"]
@@ -33,6 +41,7 @@ def node_datasheet(
     *,
     module: str,
     vhdl_ports: Mapping[str, str],
+    placed: Mapping[str, Mapping[str, Any]],
 ) -> str:
     """Write the datasheet of a node.
 
@@ -42,12 +51,14 @@ def node_datasheet(
         The outermost entity and module.
     vhdl_ports : mapping of str to str
         Names of ports in VHDL, where they differ.
+    placed : mapping
+        What the manifests of bitstreams say of them, by the name of the board.
     """
     facts = facts_of(description)
     stores = list(_stores(facts))
-    areas = list(_areas(facts, stores))
-    known = [(lut, ff) for _, _, lut, ff, *_ in areas if lut is not None]
-    total = tuple(map(sum, zip(*known, strict=True)))
+    area = area_of(facts)
+    how = f"estimated{area['without']}"
+    rows = [_placed(board, found) for board, found in sorted(placed.items())]
     needed = clock_needed(facts)
     return render(
         "node.html.j2",
@@ -59,8 +70,11 @@ def node_datasheet(
         tiles=[
             (len(facts["topics"]), "topics and services"),
             (f"{memory_bytes(facts):,}", "bytes of packet memory"),
-            (f"{total[0]:,} LUT", "estimated, without the accelerator"),
-            (f"{total[1]:,} FF", "estimated, without the accelerator"),
+            (f"{area['lut']:,} LUT", how),
+            (f"{area['ff']:,} FF", how),
+            (f"{area['mhz']:.0f} MHz", f"estimated, slowest part: {area['slowest']}"),
+            *((row[2], f"measured, placed on {row[1]}") for row in rows),
+            *((f"{row[4]} MHz", f"measured, placed on {row[1]}") for row in rows),
             *([(_clock(needed), "needed for all stated rates")] if needed else []),
         ],
         made_by=f"firm-hdl {firm_hdl.__version__}",
@@ -69,8 +83,10 @@ def node_datasheet(
         blocks=_blocks(facts, stores),
         warnings=list(warnings_of(description, facts)),
         stores=[_row(*each) for each in stores],
-        areas=areas,
-        total=total,
+        areas=[_area(name, each) for name, each in parts_of(facts)],
+        total=_area("sum, clock of the slowest part", area, how),
+        placed=rows,
+        cells=placed_cells(area["lut"]),
         header=HEADER,
         messages=list(_messages(description)),
         ports=ports,
@@ -151,16 +167,11 @@ def _clock(hz: float) -> str:
     return f"{float(f'{hz / scale:.3g}'):g} {unit}"
 
 
-def _kind(topic: Mapping[str, Any], direction: Any) -> str:
-    kind: str = topic["kind"]
-    return SERVICE_PARTS[direction] if kind == "serve" else kind
-
-
 def _row(topic: Mapping[str, Any], direction: str, store: Mapping[str, Any]) -> tuple[str, ...]:
     rate, clock = topic["rate_hz"], store["clock_hz"]
     return (
         str(topic["id"]),
-        f"{topic['name']} ({_kind(topic, direction)})",
+        f"{topic['name']} ({kind_of(topic, direction)})",
         store["message"],
         size_text(store["min_bytes"], store["max_bytes"]),
         f"{store['max_message_bytes']:,}",
@@ -172,30 +183,36 @@ def _row(topic: Mapping[str, Any], direction: str, store: Mapping[str, Any]) -> 
     )
 
 
-def _areas(
-    facts: Mapping[str, Any], stores: Sequence[tuple[dict[str, Any], str, dict[str, Any]]]
-) -> Iterator[tuple[str, str, int | None, int | None, str, str]]:
-    """Yield parts: name, device, look-up tables, flip-flops, clock, and how that is known."""
-    for topic, direction, store in stores:
-        what = f"converter of {topic['name']} ({_kind(topic, direction)})"
-        if (found := store["estimate"]) is None:
-            yield what, "", None, None, "", "not measured"
-            continue
-        how = "measured" if found["is_same"] else f"estimated: {found['type']}"
-        yield what, found["part"], found["lut"], found["ff"], f"{found['mhz']:.0f}", how
-    parts = {
-        "core: gates, FIFOs, router, arbiter, clock": core_estimate(len(stores)),
-        "link": link_estimate(facts["link"]["kind"]),
-    }
-    if "ethernet" in facts["link"]:
-        parts["Ethernet: MAC to UDP"] = ethernet_estimate()
-    if facts["accelerator"]:
-        parts[f"accelerator {facts['accelerator']}"] = None
-    for what, part in parts.items():
-        if part is None:
-            yield what, "", None, None, "", "not measured"
-        else:
-            yield what, part.part, part.lut, part.ff, "", part.how
+_NAMES = {
+    "core": "core: gates, FIFOs, router, arbiter, clock",
+    "ethernet": "Ethernet: MAC to UDP",
+}
+
+
+def _area(name: str, found: Mapping[str, Any] | None, how: str = "") -> tuple[str, ...]:
+    """Return a row: part, device, look-up tables, flip-flops, clock, and how that is known."""
+    if found is None:
+        return _NAMES.get(name, name), "", "", "", "", "not measured"
+    figures = (f"{found['lut']:,}", f"{found['ff']:,}", f"{found['mhz']:.0f}")
+    return _NAMES.get(name, name), found["part"], *figures, how or how_text(found)
+
+
+def _placed(board: str, found: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return a row of a bitstream, whose figures `found` are those of its manifest."""
+    used = {name: f"{n:,}" for name, (n, _) in found["cells"].items()}
+    cells = "ICESTORM_LC" if "ICESTORM_LC" in used else "TRELLIS_COMB"
+    clocks = found["clocks"]
+    name = min(clocks, key=lambda each: clocks[each]["reached_mhz"] / clocks[each]["needed_mhz"])
+    reached, needed = (clocks[name][key] for key in ("reached_mhz", "needed_mhz"))
+    tools = ", ".join(f"{tool} {version}" for tool, version in found["tools"].items())
+    return (
+        "the whole node with its accelerator, placed",
+        board,
+        f"{used.get(cells, '0')} {cells}",
+        used.get("TRELLIS_FF", ""),
+        f"{reached:.1f}",
+        f"measured: {name} needs {needed:g} ({tools})",
+    )
 
 
 def _messages(description: Description) -> Iterator[dict[str, Any]]:

@@ -13,7 +13,7 @@ from typing import Literal, TypeAlias
 
 from firm_hdl.errors import Span
 from firm_hdl.model import Message, Wire
-from firm_hdl.plan import Plan, build_plan
+from firm_hdl.plan import BUS_BYTES, Plan, build_plan
 from firm_hdl.wire import lay_out
 
 __all__ = [
@@ -21,6 +21,7 @@ __all__ = [
     "DATAGRAM_BYTES",
     "ETHERNETS",
     "LINKS",
+    "NODE_BUS_BYTES",
     "SERVICE_PARTS",
     "Description",
     "Direction",
@@ -57,6 +58,9 @@ SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
 
 CONTROL_TOPIC = 0
 """The id of control messages. Topics are numbered from 1 on."""
+
+NODE_BUS_BYTES = tuple(width for width in BUS_BYTES if width <= 16)
+"""Bus widths of a node: the header of a frame, 16 bytes, has to fill whole beats."""
 
 DATAGRAM_BYTES = 1472
 """Payload of the largest datagram that fits into a frame of Ethernet: 1500 bytes, less 20 for the
@@ -239,11 +243,14 @@ class Hdl:
         Files in compile order, relative to the folder of the description.
     entity : str
         Name of the entity or module.
+    has_records : bool
+        Messages are ports of records or structs, rather than of plain vectors.
     """
 
     language: Language
     files: tuple[str, ...]
     entity: str
+    has_records: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

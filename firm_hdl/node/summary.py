@@ -10,7 +10,7 @@ from dataclasses import asdict
 from functools import cache
 from typing import Any, TypeAlias
 
-from firm_hdl.estimates import Estimate, estimates_of
+from firm_hdl.estimates import Estimate, estimates_of, part_estimate, placed_cells
 from firm_hdl.metrics import Metrics, metrics_of
 from firm_hdl.node.capacity import rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
@@ -23,11 +23,20 @@ from firm_hdl.node.description import (
     Topic,
 )
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
-from firm_hdl.node.reading import LINK_OPTIONS
+from firm_hdl.node.link_options import LINK_OPTIONS
 from firm_hdl.node.rtps.endpoints import ports_of_link
 from firm_hdl.timing import Cost, timing
 
-__all__ = ["clock_needed", "facts_of", "memory_bytes", "summary", "warnings_of"]
+__all__ = [
+    "area_of",
+    "clock_needed",
+    "facts_of",
+    "kind_of",
+    "memory_bytes",
+    "parts_of",
+    "summary",
+    "warnings_of",
+]
 
 
 _Figures: TypeAlias = tuple[Metrics, Cost, Mapping[str, Estimate]]
@@ -68,6 +77,7 @@ def facts_of(description: Description) -> dict[str, Any]:
         },
         "accelerator": description.accelerator,
         "topics": [_topic(topic, figures_of) for topic in description.topics],
+        "parts": {name: asdict(found) for name, found in _parts(description)},
         "registers": [
             {"number": each.number, "owner": each.owner, "part": each.part, "name": each.name}
             for each in registers(description)
@@ -82,6 +92,20 @@ def _link(link: Link) -> dict[str, Any]:
         for name in ("ethernet", "mac", "gateway", *(("address",) if link.kind == "udp" else ())):
             options.pop(name, None)
     return options
+
+
+def _parts(description: Description) -> Iterator[tuple[str, Estimate]]:
+    """Yield the estimates of what is not a converter."""
+    link, bus_bytes = description.link, description.bus_bytes
+    figures = {
+        "memories": sum(1 for topic in description.topics for _ in topic.stores),
+        "bus_bytes": bus_bytes,
+        "peers": link.peers,
+    }
+    yield "core", part_estimate("core", **figures)
+    yield "link", part_estimate(link.kind, **figures)
+    if link.has_ethernet:
+        yield "ethernet", part_estimate(f"ethernet {link.kind}")
 
 
 def _topic(topic: Topic, figures_of: Callable[[Store], _Figures]) -> dict[str, Any]:
@@ -166,7 +190,7 @@ def _table(facts: dict[str, Any]) -> Iterator[str]:
 def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
     for topic in facts["topics"]:
         for direction, store in topic["packets"].items():
-            kind = SERVICE_PARTS[direction] if topic["kind"] == "serve" else topic["kind"]
+            kind = kind_of(topic, direction)
             least, most = store["min_bytes"], store["max_bytes"]
             size = f"{least}" if least == most else f"{least}-{'' if most is None else most}"
             rate, clock = topic["rate_hz"], store["clock_hz"]
@@ -184,17 +208,19 @@ def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
 
 
 def _totals(facts: dict[str, Any]) -> Iterator[str]:
-    """Yield sums: memory, area of converters, and bytes on the link."""
-    stores = [store for topic in facts["topics"] for store in topic["packets"].values()]
+    """Yield sums: memory, area, and bytes on the link."""
     yield f"memory for packets: {memory_bytes(facts)} bytes"
-    found = [store["estimate"] for store in stores if store["estimate"] is not None]
-    if found:
-        lut, ff = (sum(each[key] for each in found) for key in ("lut", "ff"))
-        slowest = min(each["mhz"] for each in found)
-        yield (
-            f"converters, after measured ones on {found[0]['part']}: {lut} LUT, {ff} FF, "
-            f"{slowest:g} MHz; gates, core and link come on top"
-        )
+    area = area_of(facts)
+    parts = {"converters": area_of({**facts, "parts": {}}), **facts["parts"]}
+    listed = "; ".join(f"{name} {each['lut']} LUT, {each['ff']} FF" for name, each in parts.items())
+    yield (
+        f"area on {area['part']}, estimated{area['without']}: {area['lut']} LUT, {area['ff']} FF"
+    )
+    yield f"    {listed}"
+    yield (
+        f"    {area['mhz']:.0f} MHz in its slowest part ({area['slowest']}); when placed, about "
+        f"{placed_cells(area['lut'])} cells of look-up tables"
+    )
     if needed := clock_needed(facts):
         yield f"clock for all stated rates on one link: {needed / 1e6:.3g} MHz"
     if facts["link"]["kind"] == "rtps":
@@ -202,6 +228,39 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     else:
         yield f"a message costs {HEADER_BYTES} bytes of header"
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"
+
+
+def kind_of(topic: Mapping[str, Any], direction: Any) -> str:
+    """Return what a topic is in a direction, such as ``subscribe`` or ``request``."""
+    kind: str = topic["kind"]
+    return SERVICE_PARTS[direction] if kind == "serve" else kind
+
+
+def parts_of(facts: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any] | None]]:
+    """Yield all parts of a node and their estimates; `None`: nothing like it was measured."""
+    for topic in facts["topics"]:
+        for direction, store in topic["packets"].items():
+            yield f"converter of {topic['name']} ({kind_of(topic, direction)})", store["estimate"]
+    yield from facts["parts"].items()
+    if facts["accelerator"]:
+        yield "accelerator", None
+
+
+def area_of(facts: Mapping[str, Any]) -> dict[str, Any]:
+    """Add up the parts: `part`, `lut`, `ff`, `mhz` of the `slowest`, and `without` what that is."""
+    parts = list(parts_of(facts))
+    known = {name: each for name, each in parts if each is not None}
+    unknown = {name for name, each in parts if each is None}
+    without = ", without the accelerator" if unknown == {"accelerator"} else ""
+    slowest = min(known, key=lambda name: known[name]["mhz"], default="")
+    return {
+        "part": ", ".join(dict.fromkeys(each["part"] for each in known.values())),
+        "lut": sum(each["lut"] for each in known.values()),
+        "ff": sum(each["ff"] for each in known.values()),
+        "mhz": known[slowest]["mhz"] if known else 0,
+        "slowest": slowest,
+        "without": without or (", without parts that were not measured" if unknown else ""),
+    }
 
 
 def memory_bytes(facts: Mapping[str, Any]) -> int:

@@ -47,7 +47,7 @@ def node_ports(node: Node) -> tuple[ComponentPort, ...]:
 
     Raises
     ------
-    ValueError
+    UserError
         If the node has more input bits than Amaranth elaborates.
     """
     return _plain(node).ports
@@ -57,7 +57,6 @@ def _plain(node: Node) -> PlainPorts:
     return PlainPorts(
         node,
         kind="node",
-        clocks={"sync": ("aclk", "aresetn")},
         has_axis=lambda path: path[0] == "link",
         spell=_spelled,
     )

@@ -2,7 +2,6 @@
 
 from firm_hdl.plan.build import build_plan
 from firm_hdl.plan.check import check
-from firm_hdl.plan.directions import DIRECTIONS, Direction
 from firm_hdl.plan.interpret import (
     Decoded,
     DecodeStatus,
@@ -16,9 +15,11 @@ from firm_hdl.plan.interpret import (
 )
 from firm_hdl.plan.limits import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, check_bus_bytes
 from firm_hdl.plan.tree import (
+    DIRECTIONS,
     Charge,
     Constant,
     Count,
+    Direction,
     Fixed,
     Item,
     Leaf,

@@ -26,9 +26,11 @@ from firm_hdl.model import PRIMITIVE_OF, Primitive, Wire
 from firm_hdl.wire import RULES
 
 __all__ = [
+    "DIRECTIONS",
     "Charge",
     "Constant",
     "Count",
+    "Direction",
     "Fixed",
     "Item",
     "Leaf",
@@ -45,6 +47,10 @@ __all__ = [
     "size_of",
     "walk",
 ]
+
+Direction: TypeAlias = Literal["deserializer", "serializer"]
+DIRECTIONS: tuple[Direction, ...] = ("deserializer", "serializer")
+"""The two converters of a plan."""
 
 LeafKind: TypeAlias = Literal["scalar", "length", "items", "trigger"]
 

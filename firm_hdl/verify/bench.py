@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -33,18 +33,16 @@ from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan
 from firm_hdl.sim.payloads import encoder_of
 from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
+from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import first_difference
 from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
-    Judged,
-    Made,
-    Recorder,
     Stopwatch,
     Trial,
     TypesSystem,
+    counted,
     failure_of,
-    judged,
     kept,
     print_passes,
     recorded,
@@ -230,31 +228,28 @@ class Benches(TypesSystem):
         """What GHDL says of its version: results of another one are another run's."""
         return {"ghdl": version_of(self._ghdl)}
 
-    def run(self, recorder: Recorder) -> list[Judged]:
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Run all benches, and print a table for each bus."""
-        return [each for width in self._request.widths for each in self._run(width, recorder)]
+        return [each for width in self._request.widths for each in self._run(width, writer)]
 
-    def _run(self, bus_bytes: int, recorder: Recorder) -> list[Judged]:
+    def _run(self, bus_bytes: int, writer: ResultsWriter | None) -> list[Record]:
         """Run the benches with one bus."""
         began = time.perf_counter()
-        label = f"{bus_bytes}-byte bus"
-        tests = {test: test for test in self._tests(bus_bytes)}
-        records = kept(tests, recorder, self._records, label=label).values()
+        given, jobs = (self._request, self._ghdl), self._request.jobs
+        records = kept(
+            self._tests(bus_bytes),
+            writer,
+            lambda left: run_tests(run_bench, given, left, self._command, jobs=jobs),
+            _lines_of,
+            label=f"{bus_bytes}-byte bus",
+        )
         print_passes(records, "benches pass")
         packets = sum(each.packets for each in records)
         transfers = round(sum(each.metrics.get("transfers", 0) for each in records))
         seconds = time.perf_counter() - began
         print(f"{packets} packets, {transfers} transfers of leaves, {seconds:.0f} s")
-        return judged(records)
+        return counted(records)
 
-    def _records(self, left: Sequence[Test]) -> Made[Test]:
-        given = self._request, self._ghdl
-        jobs = self._request.jobs
-        return run_tests(
-            run_bench,
-            given,
-            left,
-            self._command,
-            lambda record: failure_of(f"{record.test.type} ({record.test.distro})", record),
-            jobs=jobs,
-        )
+
+def _lines_of(record: Record) -> Iterator[str]:
+    return failure_of(f"{record.test.type} ({record.test.distro})", record)

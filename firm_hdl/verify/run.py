@@ -32,8 +32,10 @@ from firm_hdl.verify.results.file import (
     environment,
     inputs_digest,
 )
+from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.results.verdict import Failed, NotJudged
-from firm_hdl.verify.systems.system import Judged, Recorder, System
+from firm_hdl.verify.systems.options import Request
+from firm_hdl.verify.systems.system import System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.system import Ts1, each_distro
 from firm_hdl.verify.ts2.system import Ts2
@@ -59,7 +61,7 @@ def run_workload(work: Workload) -> int:
     try:
         with unwound_when_terminated():
             found = _run_systems(work)
-        for line in concluded(found, is_named=request.is_named):
+        for line in concluded(found, request):
             print(line)
         if request.report is not None and request.results is not None:
             write_report([request.results], request.report)
@@ -75,53 +77,56 @@ def run_workload(work: Workload) -> int:
         raise UserError(str(error)) from None
     for problem in work.problems:
         print(problem, file=sys.stderr)
-    return 1 if failure(found, is_named=request.is_named, refused=len(work.problems)) else 0
+    return 1 if failure(found, request, len(work.problems)) else 0
 
 
-def failure(found: Sequence[Judged], *, is_named: bool, refused: int = 0) -> str:
+def failure(found: Sequence[Record], request: Request, refused: int = 0) -> str:
     """Return why a run is no success; empty if no test failed, and enough was judged.
 
     Parameters
     ----------
-    is_named : bool
-        Whether the user named the types. Then every test has to be judged, except mutations;
-        otherwise, one.
+    request : Request
+        If the user named the types, every test has to be judged, except mutations; otherwise, one.
     refused : int
         Definitions with errors.
     """
-    failed = [each.what for each in found if isinstance(each.verdict, Failed)]
+    failed = [each.test.title for each in found if isinstance(each.verdict, Failed)]
     reasons = [f"{len(failed)} of {len(found)} tests failed, such as {failed[0]}"] if failed else []
-    if _is_unjudged(found, is_named):
-        reasons.append(concluded(found, is_named=is_named)[-1].removesuffix(_FAILS))
+    if _is_unjudged(found, request):
+        reasons.append(concluded(found, request)[-1].removesuffix(_FAILS))
     if refused:
         wrong = "definition is" if refused == 1 else "definitions are"
         reasons.append(f"{refused} {wrong} refused")
     return "; ".join(reasons)
 
 
-def _is_unjudged(found: Sequence[Judged], is_named: bool) -> bool:
+def _is_unjudged(found: Sequence[Record], request: Request) -> bool:
     """Whether a run fails because of what was not judged."""
     silent = [each for each in found if isinstance(each.verdict, NotJudged)]
-    return len(silent) == len(found) or (is_named and any(each.has_name for each in silent))
+    if len(silent) == len(found):
+        return True
+    # The user named the definitions that mutations are made of.
+    named = [each for each in silent if not (request.mutations and each.test.system == "ts1")]
+    return request.is_named and bool(named)
 
 
-def concluded(found: Sequence[Judged], *, is_named: bool) -> list[str]:
+def concluded(found: Sequence[Record], request: Request) -> list[str]:
     """Return lines for the end of a run: the tests that were not judged, and the consequence."""
     not_judged = [
-        (each.what, each.verdict) for each in found if isinstance(each.verdict, NotJudged)
+        (each.test.title, each.verdict) for each in found if isinstance(each.verdict, NotJudged)
     ]
     lines = [f"not judged: {what}: {verdict.reason}" for what, verdict in not_judged]
     if len(not_judged) == len(found):
         return [*lines, f"no test was judged{_FAILS}"]
     if not_judged:
         were = "was" if len(not_judged) == 1 else "were"
-        is_wrong = _is_unjudged(found, is_named)
+        is_wrong = _is_unjudged(found, request)
         meaning = f", although named{_FAILS}" if is_wrong else ""
         lines.append(f"{len(not_judged)} of {len(found)} tests {were} not judged{meaning}")
     return lines
 
 
-def _run_systems(work: Workload) -> list[Judged]:
+def _run_systems(work: Workload) -> list[Record]:
     """Run the test systems; return all tests with their verdicts."""
     with ExitStack() as stack:
         systems: Sequence[System] = [Libraries(work.tasks, work.request)]
@@ -133,10 +138,9 @@ def _run_systems(work: Workload) -> list[Judged]:
         if work.request.results is not None:
             writer = stack.enter_context(_writer(work, work.request.results, systems))
         # All systems run, even if an earlier one has failures.
-        found = [each for system in systems for each in system.run(Recorder(writer))]
+        found = [each for system in systems for each in system.run(writer)]
         if writer is not None:
-            named, refused = work.request.is_named, len(work.problems)
-            writer.conclude(failure(found, is_named=named, refused=refused))
+            writer.conclude(failure(found, work.request, len(work.problems)))
         return found
 
 

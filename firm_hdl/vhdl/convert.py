@@ -60,7 +60,6 @@ def convert(
     name: str = "top",
     ports: Any = None,
     platform: Any = None,
-    unsigned_ports: bool = False,
     header: str = "",
 ) -> Vhdl:
     """Write a design as VHDL-2008.
@@ -74,8 +73,6 @@ def convert(
         Name of the outermost entity; the names of inner entities are this name and their path.
     ports, platform
         As for `amaranth.back.rtlil.convert`; a component needs no ports.
-    unsigned_ports : bool
-        Give the outermost entity ports of type `unsigned` instead of `std_logic_vector`.
     header : str
         Lines for a comment at the head of every entity's file.
 
@@ -105,7 +102,7 @@ def convert(
             entities=entities,
             port_names=port_names,
             modules=netlist.design.modules,
-            vectors=module is top and not unsigned_ports,
+            vectors=module is top,
         )
         files[f"{entities[module.name]}.vhd"] = remark + writer.text()
         names[module.name] = writer.entity_names()

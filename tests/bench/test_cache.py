@@ -69,38 +69,22 @@ def test_figures_with_a_problem_and_damaged_files_are_measured_again(
 ) -> None:
     good = result().measured
     assert good is not None
-    found = [replace(good, problem="no room"), good, replace(good, mapping="again")]
+    texts = ["{}", "[]", "null", '{"device": "abacus"}', ""]
+    again = [replace(good, mapping=f"again {number}") for number in range(len(texts) + 1)]
+    found = [replace(good, problem="no room"), good, *again]
     monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
     monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
 
-    def once() -> Measured:
-        return cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
-
-    assert once().problem == "no room" and once() == once() == good
-    (file,) = tmp_path.iterdir()
-    file.write_text(file.read_text()[:-9])
-    assert once().mapping == "again"
-
-
-@pytest.mark.parametrize("text", ["{}", "[]", "null", '{"device": "abacus"}', ""])
-def test_a_file_that_has_no_figures_is_replaced(
-    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    good = result().measured
-    assert good is not None
-    found = [good, replace(good, mapping="again")]
-    monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
-    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
     folder = tmp_path / "new" / "folder"
 
-    def once() -> str:
-        found_now = cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=folder)
-        return found_now.mapping
+    def once() -> Measured:
+        return cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=folder)
 
-    assert once() == good.mapping
+    assert once().problem == "no room" and once() == once() == good
     (file,) = folder.iterdir()
-    file.write_text(text)
-    assert [once(), once()] == ["again", "again"]
+    for text, measured in zip([file.read_text()[:-9], *texts], again, strict=True):
+        file.write_text(text)
+        assert once() == once() == measured
 
 
 def test_other_preparations_of_yosys_have_figures_of_their_own(

@@ -93,8 +93,6 @@ def test_a_figure_that_is_missing_is_a_failure(
     [
         (["--seeds", "a", TWIST], "argument --seeds: 'a' is not a number"),
         (["--seeds", "1,-1", TWIST], "argument --seeds: must be from 0 to 2147483647, not -1"),
-        ([], "name either types or --all"),
-        (["--all", TWIST], "name either types or --all"),
         (["--device", "abacus", TWIST], "argument --device: invalid choice: 'abacus'"),
     ],
 )
@@ -193,7 +191,9 @@ def test_a_process_that_failed_is_a_problem_of_its_converter(
     assert [each.problem for each in found] == ["", "it was killed"]
 
 
-def test_options_are_those_of_the_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_options_are_those_of_the_tasks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    make_files(tmp_path, {"src/p/msg/A.msg": "q/B b", "more/q/msg/B.msg": "int8 b"})
+    src, more = str(tmp_path / "src"), str(tmp_path / "more")
     seen = []
     monkeypatch.setattr(command, "versions", lambda device, *, with_placer: {})
 
@@ -202,16 +202,30 @@ def test_options_are_those_of_the_tasks(monkeypatch: pytest.MonkeyPatch) -> None
         return []
 
     monkeypatch.setattr(command, "run_tasks", run_tasks)
-    words = ["--distro", "noetic", "--wire", "cdr", "--bus-bytes", "16", "--seeds", "4,5"]
-    words += ["--mapping", "tee", "--messages", "7", "--message-seed", "9", "--cache", "c"]
-    assert bench("geometry_msgs/Twist", *words, "--jobs", "3") == 1
+    words = ["--distro", "humble", "--path", src, "--depends", more, "--wire", "ros1"]
+    # A width or a direction that is given twice is one.
+    words += ["--bus-bytes", "8", "--bus-bytes", "2", "--bus-bytes", "8", "--seeds", "0,2147483647"]
+    words += ["--direction", "serializer", "--direction", "serializer"]
+    words += ["--mapping", "tee", "--messages", "1", "--message-seed", "9", "--cache", "c"]
+    assert bench("p/A", *words, "--jobs", "3") == 1
     ((tasks, jobs),) = seen
-    assert jobs == 3 and len(tasks) == 2
-    task = tasks[0]
-    assert (task.converter.distro, task.converter.wire, task.converter.bus_bytes) == (
-        "noetic",
-        "cdr",
-        16,
+    converter = Converted(
+        distro="humble",
+        type="p/msg/A",
+        wire="ros1",
+        bus_bytes=8,
+        max_message_bytes=tasks[0].converter.max_message_bytes,
+        direction="serializer",
     )
-    assert (task.seeds, task.mapping, task.cache, task.device) == ((4, 5), "tee", "c", "ecp5")
-    assert (task.stated.count, task.stated.seed) == (7, 9)
+    task = BenchTask(
+        converter=converter,
+        paths=(src,),
+        depends=(more,),
+        device="ecp5",
+        seeds=(0, 2147483647),
+        mapping="tee",
+        stated=Stated(count=1, seed=9),
+        cache="c",
+    )
+    other = replace(task, converter=replace(converter, bus_bytes=2))
+    assert (tasks, jobs) == ([task, other], 3)

@@ -59,14 +59,6 @@ def test_both_converters_are_measured_with_three_seeds(asked: dict[str, Any]) ->
     assert asked["jobs"] == 1
 
 
-def test_seed_zero_is_a_seed(asked: dict[str, Any]) -> None:
-    words = ["--seeds", "0,2147483647", "--message-seed", "0", "--messages", "1"]
-    assert main(["bench", BOOL, *words]) == 0
-    task = asked["tasks"][0]
-    assert task.seeds == (0, 2147483647)
-    assert (task.stated.seed, task.stated.count) == (0, 1)
-
-
 @pytest.mark.parametrize("words", [["--seeds", "2147483648"], ["--message-seed", "-1"]])
 def test_numbers_out_of_range_are_refused(words: list[str], asked: dict[str, Any]) -> None:
     with pytest.raises(SystemExit) as ended:

@@ -3,24 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from firm_hdl import Deserializer, Serializer, load_message
-from firm_hdl.bench import command, cycles
+from firm_hdl.bench import command
 from firm_hdl.bench.compare import compare
 from firm_hdl.bench.devices import DEVICES, PARITY, Area
 from firm_hdl.bench.messages import Stated, values
 from firm_hdl.bench.results import Result
 from firm_hdl.bench.tables import summary
 from firm_hdl.cli import main
-from firm_hdl.sim import RunResult
 from tests.bench.results import result
-from tests.frontend.workspace import make_files
 from tests.strategies import make
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -140,37 +136,6 @@ def test_numbers_of_messages_have_all_their_bits() -> None:
     assert max(value["v"] for value in drawn) >> 62 == 1
 
 
-@pytest.mark.parametrize("component", [Deserializer, Serializer])
-def test_cycles_are_those_between_two_runs_and_latency_is_that_of_the_first(
-    component: type, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    given = []
-
-    class Run:
-        def __init__(self, *converters: Any, message: Any) -> None:
-            assert [each is None for each in converters] == [
-                component is Serializer,
-                component is Deserializer,
-            ]
-
-        def run_packets(self, sent: Sequence[Any]) -> RunResult:
-            given.append(len(sent))
-            # The last leaf comes in cycle 20 of one message, and the status three cycles later.
-            end = 10 * len(sent) + 10
-            return RunResult(
-                last_cycle_in=end - 7 * len(sent), last_cycle=end, last_status_cycle=end + 3
-            )
-
-        run_messages = run_packets
-
-    monkeypatch.setattr(cycles, "Harness", Run)
-    message = load_message("std_msgs/msg/Bool")
-    found = cycles.count_cycles(component(message), message, Stated(count=6))
-    assert given == [1, 7]
-    assert (found.cycles, found.latency, found.beats, found.bytes) == (60, 7, 6, 30)
-    assert found.messages == Stated(count=6) and found.bits_per_cycle == 4
-
-
 @pytest.fixture
 def given_results(monkeypatch: pytest.MonkeyPatch) -> list[Result]:
     """The results of the command; without them, none is measured."""
@@ -197,24 +162,3 @@ def test_a_problem_is_a_failure_also_if_no_figure_is_worse(
     # The old figures are read before the file is replaced.
     assert main([*words, "--compare", str(file), "--json", str(file)]) == 1
     assert main([*words, "--compare", str(file)]) == 0
-
-
-def test_tasks_are_of_each_width_once_and_of_all_folders(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    make_files(tmp_path, {"src/p/msg/A.msg": "q/B b", "more/q/msg/B.msg": "int8 b"})
-    src, more = str(tmp_path / "src"), str(tmp_path / "more")
-    asked: list[Any] = []
-    monkeypatch.setattr(command, "run_tasks", lambda tasks, jobs: asked.extend(tasks) or [])
-    words = ["--device", "none", "--path", src, "--depends", more]
-    words += ["--bus-bytes", "8", "--bus-bytes", "2", "--bus-bytes", "8", "--seeds", "0,7,"]
-    words += ["--direction", "serializer", "--direction", "serializer"]
-    assert main(["bench", "p/A", *words]) == 1
-    assert [(task.converter.type, task.converter.bus_bytes) for task in asked] == [
-        ("p/msg/A", 8),
-        ("p/msg/A", 2),
-    ]
-    for task in asked:
-        assert (task.paths, task.depends) == ((src,), (more,))
-        assert (task.seeds, task.device) == ((0, 7), None)
-        assert task.converter.direction == "serializer"

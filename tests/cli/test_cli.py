@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 import firm_hdl
+from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.cli import main
 from firm_hdl.plan import build_plan, to_yaml
 from firm_hdl.program.table import program_text
@@ -188,7 +189,7 @@ def test_wrong_calls_exit_2(workdir, capsys, arguments, message):
 
 def test_build_prints_its_results(workdir, capsys):
     arguments = ["build", "geometry_msgs/msg/Twist", "--out", "gen", "--bus-bytes", "4"]
-    assert main(arguments) == 0
+    assert main([*arguments, "--with", "tools"]) == 0
     out, err = capsys.readouterr()
     folder = os.path.join("gen", "lyrical", "geometry_msgs_msg_Twist_cdr_4", "")
     figures = (
@@ -200,8 +201,17 @@ def test_build_prints_its_results(workdir, capsys):
     script = Path(folder, "vhdl", "run_ghdl.sh")
     assert (out.startswith(f"wrote   {folder}\n{figures}next: {script} runs "), err) == (True, "")
     assert script.exists() and out.count("\n") == 6
-    assert main(arguments) == 0
+    message = firm_hdl.load_message("geometry_msgs/msg/Twist")
+    packets = stimuli(message, build_plan(lay_out(message), bus_bytes=4))
+    text = Path(folder, "vhdl", "stimuli.txt").read_text()
+    assert text.endswith("\n".join(["", *(packet.hex() for packet in packets), ""]))
+    assert main([*arguments, "--with", "tools"]) == 0
     assert capsys.readouterr() == (out.replace("wrote  ", "current"), "")
+    # A file that is outdated, and that the user changed, is left and told.
+    Path(folder, "waivers.vlt").write_text("mine")
+    assert main(arguments) == 0
+    kept = f"wrote   {folder}\nkept    {folder}waivers.vlt, which you changed\n"
+    assert capsys.readouterr() == (out.replace(f"wrote   {folder}\n", kept), "")
     assert main(["info", *arguments[1:2], "--bus-bytes", "4"]) == 0
     out, err = capsys.readouterr()
     recovery = (

@@ -26,7 +26,7 @@ from tests.frontend.workspace import make_files
 BUILD = importlib.import_module("firm_hdl.export.build")
 RUN = {
     "verify": "firm_hdl.verify.command",
-    "golden": "firm_hdl.verify.ts2.golden_command",
+    "golden": "firm_hdl.verify.ts2.golden",
     "cover": "firm_hdl.covering.command",
     "report": "firm_hdl.verify.report.formats",
     "prove": "firm_hdl.equivalence.command",
@@ -77,9 +77,11 @@ def test_build_is_given_all_options(workdir, monkeypatch):
     monkeypatch.setattr(BUILD, "build", lambda types, out, **options: given.update(
         options, types=types, out=out) or [])  # fmt: skip
     words = [*WORDS, "--out", "there", "--ports", "flat", "--force", "--distro", "iron"]
+    words += ["--jobs", "3"]
     assert main(["build", "p/A", "p/srv/S", "--path", ".", *words]) == 0
     assert given["types"] == ["p/A", "p/srv/S"] and given["out"] == "there"
     assert given["options"] == Options(**OPTIONS, ports="flat") and given["force"] is True
+    assert given["jobs"] == 3
     assert given["library"].distro == "iron" and "p/msg/A" in given["library"].names()
     assert main(["build", "p/A", "--path", "."]) == 0
     assert (given["options"], given["force"]) == (Options(), False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import io
 import os
 import subprocess
@@ -14,7 +13,6 @@ import pytest
 from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
-from firm_hdl.export.build import Built
 from firm_hdl.export.design import BuiltDesign
 from firm_hdl.frontend import Library
 from firm_hdl.identity.command import md5_lines
@@ -31,7 +29,6 @@ FILES = {
     "src/p/msg/C.msg": "uint16 c",
     "more/q/msg/B.msg": "int16 b",
 }
-BUILD = importlib.import_module("firm_hdl.export.build")
 # Files of a user that made way for two generated ones, not in the order of their names.
 KEPT = ("a.v", "vhdl/z.vhd")
 TOLD = "".join(f"kept    there{os.sep}{name}, which you changed\n" for name in KEPT)
@@ -106,27 +103,6 @@ def test_an_argument_with_a_nul_character_is_refused(words, capsys):
     assert capsys.readouterr().err.endswith("error: an argument contains a NUL character\n")
 
 
-def test_a_part_is_built_with_its_options_and_told(tmp_path, monkeypatch, capsys):
-    asked = []
-    monkeypatch.setattr("firm_hdl.export.parts.make_part", lambda kind, **given: (kind, given))
-
-    def build_part(part, out, *, force):
-        asked.append((part, out, force))
-        return BuiltDesign(folder=Path("there"), was_current=force, kept=KEPT)
-
-    monkeypatch.setattr("firm_hdl.export.parts.build_part", build_part)
-    assert main(["part", "width", "--in-bytes", "1", "--out-bytes", "2"]) == 0
-    assert capsys.readouterr().out == f"wrote   there{os.sep}\n{TOLD}"
-    words = ["--in-bytes", "1", "--out-bytes", "2", "--out", "x", "--name", "mine", "--force"]
-    assert main(["part", "width", *words]) == 0
-    assert capsys.readouterr().out == f"current there{os.sep}\n{TOLD}"
-    options = {"message": None, "in_bytes": 1, "out_bytes": 2, "side_bits": 0}
-    assert asked == [
-        (("width", {**options, "name": None}), "parts_out", False),
-        (("width", {**options, "name": "mine"}), "x", True),
-    ]
-
-
 @pytest.mark.parametrize("name", ["entity", "module", "2x", "a-b", "a b", ""])
 def test_a_part_needs_a_name_that_is_one_in_vhdl_and_verilog(name, capsys):
     assert is_refused("part", "fifo", f"--name={name}")
@@ -196,37 +172,6 @@ def test_a_node_is_built_with_its_options_and_summed_up(monkeypatch, capsys):
     assert asked_first == (("n.yaml", []), "node_out", False, False)
     assert asked_then == (("n.yaml", ["a"]), "x", True, True)
     assert packets == stimuli(message, plan) * 2
-
-
-def test_folders_are_told_as_they_are_built_and_described_in_the_end(workdir, monkeypatch, capsys):
-    def build(types, out, *, library, stimuli, report, jobs, **_):
-        message = library.message("p/msg/C")
-        packets.extend(stimuli(message, build_plan(lay_out(message))))
-        given.append(jobs)
-        for built in found:
-            report(built)
-        return found
-
-    found = [
-        Built(
-            name=name,
-            folder=Path(name),
-            was_current=is_current,
-            description=f"{name}: figures",
-            kept=() if is_current else KEPT,
-        )
-        for name, is_current in (("one", False), ("two", True))
-    ]
-    packets, given = [], []
-    monkeypatch.setattr(BUILD, "build", build)
-    assert main(["build", "p/C", "--path", "src", "--jobs", "3"]) == 0
-    told = TOLD.replace("there", "one")
-    assert capsys.readouterr().out == (
-        f"wrote   one{os.sep}\n{told}current two{os.sep}\none: figures\ntwo: figures\n"
-        "next: --with all adds SystemVerilog, scripts and a datasheet\n"
-    )
-    message = Library("lyrical", ["src"]).message("p/msg/C")
-    assert packets == stimuli(message, build_plan(lay_out(message))) and given == [3]
 
 
 @pytest.mark.parametrize("command", ["md5", "hash", "proto", "metrics"])

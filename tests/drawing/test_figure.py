@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from firm_hdl.drawing.document import document
-from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
+from firm_hdl.drawing.svg import Figure, Scale
 
 
 def parts_of(method, *arguments, **options):
@@ -99,77 +99,6 @@ def test_a_vertical_axis_has_a_grid_beside_it(percent, ends):
     )
     # A line and a text for each of 0, 0.2 and so on, and the label.
     assert len(parts) == 2 * 6 + 1
-
-
-@pytest.mark.parametrize(
-    ("values", "ends", "ticks"),
-    [
-        ([1, 100], (1, 100), [1, 2, 5, 10, 20, 50, 100]),
-        ([3, 70], (2, 100), [2, 5, 10, 20, 50, 100]),
-        ([5, 5], (5, 50), [5, 10, 20, 50]),
-        ([1, 1000], (1, 1000), [1, 10, 100, 1000]),
-        ([1, 1e6], (1, 1e6), [10.0**n for n in range(7)]),
-        ([1, 1e7], (1, 1e7), [1, 1e2, 1e4, 1e6]),
-        ([0, -2, 1, 10], (1, 10), [1, 2, 5, 10]),
-    ],
-)
-def test_scales_end_at_round_figures_and_have_a_few_more(values, ends, ticks):
-    scale = Scale.logarithmic(values, 0, 100)
-    assert (scale.low, scale.high) == pytest.approx(ends)
-    assert scale.ticks() == pytest.approx(ticks)
-    assert (scale(scale.low), scale(scale.high)) == (0, 100)
-
-
-def test_a_linear_scale_has_fifths():
-    assert Scale(0, 1, 0, 100).ticks() == pytest.approx([0, 0.2, 0.4, 0.6, 0.8, 1])
-    assert Scale(-5, 5, 100, 0).ticks() == pytest.approx([-5, -3, -1, 1, 3, 5])
-    assert [Scale(-5, 5, 100, 0)(value) for value in (-5, 0, 5)] == [100, 50, 0]
-    # A tenth of a pixel is enough.
-    assert [Scale(0, 3, 0, 100)(value) for value in (1, 2)] == [33.3, 66.7]
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (1e15, "1,000,000,000,000,000"),
-        (999.5, "1.0e+03"),
-        (999.4, "999"),
-        (1000.5, "1,000"),
-        (-0.5, "-0.5"),
-        (-1234.6, "-1,235"),
-        (-1e6, "-1,000,000"),
-        (float("inf"), "-"),
-    ],
-)
-def test_numbers_have_three_digits_that_matter(value, text):
-    assert number(value) == text
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (-1, "0 s"),
-        (0.000999, "999 µs"),
-        (0.001, "1 ms"),
-        (0.999, "999 ms"),
-        (1, "1 s"),
-        (120, "2 min 0 s"),
-        (7199, "119 min 59 s"),
-        (7200, "2 h 0 min"),
-        # Numbers are rounded to seconds or minutes, of which no more than 59 are left.
-        (179.4, "2 min 59 s"),
-        (179.6, "3 min 0 s"),
-        (7259, "2 h 1 min"),
-        (10_769, "2 h 59 min"),
-        (10_771, "3 h 0 min"),
-    ],
-)
-def test_units_of_time_change_at_their_limits(value, text):
-    assert seconds(value) == text
-
-
-def test_neighbours_are_a_golden_section_apart():
-    assert [round(spread(n), 3) for n in range(4)] == [0, 0.618, 0.236, 0.854]
 
 
 def test_a_file_has_a_size_a_style_sheet_and_a_background():

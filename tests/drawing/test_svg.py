@@ -1,9 +1,8 @@
-"""Scales: ticks are round figures, in order, inside the picture."""
+"""Scales and labels: ticks are round figures, in order, inside the picture."""
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import pytest
 from hypothesis import given
@@ -45,40 +44,80 @@ def test_logarithms_are_even():
 
 
 @pytest.mark.parametrize(
+    ("values", "ends", "ticks"),
+    [
+        ([1, 100], (1, 100), [1, 2, 5, 10, 20, 50, 100]),
+        ([3, 70], (2, 100), [2, 5, 10, 20, 50, 100]),
+        ([5, 5], (5, 50), [5, 10, 20, 50]),
+        ([1, 1000], (1, 1000), [1, 10, 100, 1000]),
+        ([1, 1e6], (1, 1e6), [10.0**n for n in range(7)]),
+        ([1, 1e7], (1, 1e7), [1, 1e2, 1e4, 1e6]),
+        ([0, -2, 1, 10], (1, 10), [1, 2, 5, 10]),
+    ],
+)
+def test_scales_end_at_round_figures_and_have_a_few_more(values, ends, ticks):
+    scale = Scale.logarithmic(values, 0, 100)
+    assert (scale.low, scale.high) == pytest.approx(ends)
+    assert scale.ticks() == pytest.approx(ticks)
+    assert (scale(scale.low), scale(scale.high)) == (0, 100)
+
+
+def test_a_linear_scale_has_fifths():
+    assert Scale(0, 1, 0, 100).ticks() == pytest.approx([0, 0.2, 0.4, 0.6, 0.8, 1])
+    assert Scale(-5, 5, 100, 0).ticks() == pytest.approx([-5, -3, -1, 1, 3, 5])
+    assert [Scale(-5, 5, 100, 0)(value) for value in (-5, 0, 5)] == [100, 50, 0]
+    # A tenth of a pixel is enough.
+    assert [Scale(0, 3, 0, 100)(value) for value in (1, 2)] == [33.3, 66.7]
+
+
+@pytest.mark.parametrize(
     ("value", "text"),
     [
         (0, "0"),
         (3, "3"),
-        (12345.6, "12,346"),
         (0.12345, "0.123"),
         (1e-7, "1.0e-07"),
+        (999.4, "999"),
+        (999.5, "1.0e+03"),
+        (1000.5, "1,000"),
+        (1e15, "1,000,000,000,000,000"),
+        (-0.5, "-0.5"),
+        (-1234.6, "-1,235"),
+        (math.inf, "-"),
         (math.nan, "-"),
     ],
 )
-def test_numbers(value, text):
+def test_numbers_have_three_digits_that_matter(value, text):
     assert number(value) == text
 
 
 @pytest.mark.parametrize(
     ("value", "text"),
     [
-        (0, "0 s"),
+        (-1, "0 s"),
         (2e-6, "2 µs"),
+        (0.000999, "999 µs"),
+        (0.001, "1 ms"),
         (0.0123, "12.3 ms"),
-        (1.5, "1.5 s"),
+        (0.999, "999 ms"),
+        (1, "1 s"),
         (119.4, "119 s"),
-        (150, "2 min 30 s"),
-        (7500, "2 h 5 min"),
+        (120, "2 min 0 s"),
+        # Numbers are rounded to seconds or minutes, of which no more than 59 are left.
+        (179.4, "2 min 59 s"),
+        (179.6, "3 min 0 s"),
+        (7199, "119 min 59 s"),
+        (7200, "2 h 0 min"),
+        (10_769, "2 h 59 min"),
+        (10_771, "3 h 0 min"),
     ],
 )
-def test_times_have_units_that_suit(value, text):
+def test_units_of_time_change_at_their_limits(value, text):
     assert seconds(value) == text
 
 
-def test_neighbours_are_spread():
-    values = [spread(index) for index in range(50)]
-    assert all(0 <= value < 1 for value in values)
-    assert min(abs(a - b) for a, b in pairwise(values)) > 0.3
+def test_neighbours_are_a_golden_section_apart():
+    assert [round(spread(n), 3) for n in range(4)] == [0, 0.618, 0.236, 0.854]
 
 
 @pytest.mark.parametrize(

@@ -135,13 +135,6 @@ def test_yosys_is_made_ready_before_any_proof(
     assert (command_line[-1], timeout) == ("-V", 3600.0)
 
 
-def test_types_or_all(capsys: pytest.CaptureFixture[str]) -> None:
-    for arguments in (["prove"], ["prove", "--all", "std_msgs/msg/Bool"]):
-        with pytest.raises(SystemExit, match="2"):
-            main(arguments)
-    assert "name either types or --all" in capsys.readouterr().err
-
-
 def test_unknown_types_are_an_error(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["prove", "std_msgs/msg/Boo"]) == 1
     assert "did you mean" in capsys.readouterr().err
@@ -161,36 +154,3 @@ def test_type_that_is_too_large_is_a_failure(tmp_path: Path) -> None:
     (tmp_path / "big_msgs" / "msg" / "Big.msg").write_text(fields)
     task = replace(TASK, name="big_msgs/msg/Big", paths=(str(tmp_path),), bus_bytes=64)
     assert "Amaranth elaborates at most 65535" in converters.attempt(task).problem
-
-
-def test_options_of_the_command_reach_every_proof(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[tuple[object, ...]] = []
-    monkeypatch.setattr(
-        command,
-        "run_proofs",
-        lambda tasks, jobs, with_summary: asked.append((tasks, jobs, with_summary)) or 0,
-    )
-    options = ["--distro", "jazzy", "--path", str(tmp_path), "--bus-bytes", "4"]
-    options += ["--max-message-bytes", "999", "--timeout", "7", "--jobs", "3"]
-    assert main(["prove", "std_msgs/msg/Bool", "std_msgs/Int8", *options]) == 0
-    [(tasks, jobs, with_summary)] = asked
-    assert (jobs, with_summary) == (3, False)
-    assert tasks == [
-        ProofTask(
-            distro="jazzy",
-            name=name,
-            direction=direction,
-            paths=(str(tmp_path),),
-            bus_bytes=4,
-            max_message_bytes=999,
-            timeout=7.0,
-        )
-        for name in ("std_msgs/msg/Bool", "std_msgs/msg/Int8")
-        for direction in ("deserializer", "serializer")
-    ]
-    assert main(["prove", "std_msgs/Bool", "--distro", "noetic", "--wire", "cdr"]) == 0
-    assert {(task.wire, task.distro, task.timeout) for task in asked[1][0]} == {
-        ("cdr", "noetic", 300.0)
-    }

@@ -152,6 +152,8 @@ def test_the_command_writes_a_part_once(tmp_path, capsys):
     assert main(words) == 0 and main(words) == 0
     folder = tmp_path / "packet_crossing_1"
     assert capsys.readouterr().out == f"wrote   {folder}/\ncurrent {folder}/\n"
+    assert main([*words, "--force"]) == 0
+    assert capsys.readouterr().out == f"wrote   {folder}/\n"
     # Another memory is another design.
     assert main([*words, "--beats", "8"]) == 0
     assert capsys.readouterr().out == f"wrote   {folder}/\n"

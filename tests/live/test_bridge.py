@@ -14,7 +14,7 @@ from tests.live.load import load
 from tests.live.nodes import LARGE, LOOP, SERIAL, loop_file
 from tests.live.peer import Peer, python_of
 from tests.live.serial import check_serial
-from tests.live.trips import CLOUD, IMU, check_killed_board, check_trips, named
+from tests.live.trips import CLOUD, IMU, check_killed_board, check_trips
 from tests.tools import need
 
 pytestmark = pytest.mark.live
@@ -133,15 +133,3 @@ def test_the_peer_is_killed_and_starts_again(release, graph, bridge):
         (numbers,) = peer.result(90)["numbers"]
     assert numbers == list(range(500))
     running.stop()
-
-
-def test_what_an_account_names():
-    lines = [
-        "/imu_in   subscribe      4000         0",
-        "dropped: 5 of /imu_in: board lost",
-        "dropped: 2 on the board, /imu_out out: full",
-        "dropped: 3 of /imu_input: board lost",
-        "dropped: 4 on the way from the board: damaged",
-    ]
-    assert named(lines, IMU) == 7
-    assert named([lines[0], *lines[3:]], IMU) == 0

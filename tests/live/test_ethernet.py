@@ -6,63 +6,30 @@ Linux judges ARP, IP, ICMP and UDP, and the board's process the frame check sequ
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import socket
 import struct
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from tests.tools import need
+from tests.live.boards import build_board, make_tap, ping
 
 pytestmark = pytest.mark.live
 
-NODES = Path(__file__).parents[2] / "examples" / "nodes"
 BOARD = "192.168.50.50"
 SCANS = 60
 
 
 @pytest.fixture(scope="module")
-def tap():
-    """Make a TAP device with an address, in the network of these tests."""
-    need("/dev/net/tun", "there" if os.access("/dev/net/tun", os.R_OK | os.W_OK) else None)
-    for command in (
-        "ip tuntap add dev tap0 mode tap",
-        "ip address add 192.168.50.1/24 dev tap0",
-        "ip link set tap0 up",
-    ):
-        subprocess.run(command.split(), check=True, timeout=20)
-    yield "tap0"
-    subprocess.run("ip link delete tap0".split(), check=True, timeout=20)
-
-
-@pytest.fixture(scope="module")
-def board(tap, tmp_path_factory):
-    """Build the example, and start it; its process ends with the tests."""
-    need("Verilator", shutil.which("verilator"))
-    nodes = tmp_path_factory.mktemp("board") / "nodes"
-    shutil.copytree(NODES, nodes, ignore=shutil.ignore_patterns("work"))
-    made = subprocess.run(
-        ["make"],
-        cwd=nodes / "ethernet",
-        env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
-        capture_output=True,
-        text=True,
-        timeout=900,
-        check=False,
-    )
-    assert made.returncode == 0, made.stdout + made.stderr
+def board(tmp_path_factory):
+    """Build the example, and start it behind a TAP device; its process ends with the tests."""
+    make_tap("tap0", "192.168.50.1/24")
+    program = build_board(tmp_path_factory.mktemp("board"), "ethernet")
     process = subprocess.Popen(
-        [nodes / "ethernet" / "work" / "board", tap],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        [program, "tap0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     assert process.stdout.readline() == "ready\n"
-    yield nodes / "ethernet" / "near.yaml"
+    yield program.parents[1] / "near.yaml"
     process.kill()
     assert process.communicate()[1] == ""
 
@@ -114,21 +81,6 @@ def test_scans_go_through_ethernet_and_back(board):
     assert "dropped" not in account.replace("dropped 0", ""), account
 
 
-def checksum(data):
-    data += bytes(len(data) % 2)
-    total = sum(struct.unpack(f">{len(data) // 2}H", data))
-    while total >> 16:
-        total = (total & 0xFFFF) + (total >> 16)
-    return 0xFFFF ^ total
-
-
 @pytest.mark.usefixtures("board")
 def test_the_board_answers_ping_also_in_fragments():
-    with socket.socket(socket.AF_INET, socket.SOCK_RAW, socket.IPPROTO_ICMP) as host:
-        host.settimeout(20)
-        for number, size in enumerate((0, 56, 1472, 1473, 4000, 20_000)):
-            body = struct.pack(">HH", 77, number) + os.urandom(size)
-            total = checksum(b"\x08\0\0\0" + body)
-            host.sendto(struct.pack(">BBH", 8, 0, total) + body, (BOARD, 0))
-            answer = host.recv(65_535)[20:]
-            assert answer[:2] == b"\0\0" and answer[4:] == body and checksum(answer) == 0
+    ping(BOARD, 0, 56, 1472, 1473, 4000, 20_000)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import os
 import random
-import shutil
 import socket
 import subprocess
-import sys
 import time
-from pathlib import Path
 
 import pytest
 
@@ -19,13 +16,12 @@ from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER, SPDP_WRITER, SUBSCRIPTIONS_WRITER
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.submessages import Data
+from tests.live.boards import build_board
 from tests.live.nodes import PACKAGES
 from tests.live.peer import Peer
-from tests.tools import need
 
 pytestmark = pytest.mark.live
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "nodes" / "rtps"
 RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
 
 NODE = f"""\
@@ -40,33 +36,34 @@ accelerator: tests.live.nodes:Loop
 subscribe:
   /text_in: {{type: std_msgs/msg/String, memory_bytes: 256}}
   /imu_in: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
+  /twist_in: {{type: geometry_msgs/msg/Twist}}
+  /scan_in: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 2048}}
 publish:
   /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048}}
   /imu_out: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
+  /twist_out: {{type: geometry_msgs/msg/Twist}}
+  /scan_out: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 2048}}
 serve:
   /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
+"""
+
+
+SECOND = """\
+node: second
+namespace: /fpga
+distro: jazzy
+clock_mhz: 1
+link: {kind: rtps, address: 127.0.0.1, participant: 51}
+accelerator: firm_hdl.node.loop:Loop
+subscribe: {/text_out: {type: std_msgs/msg/String, memory_bytes: 256}}
+publish: {/text_back: {type: std_msgs/msg/String, memory_bytes: 256}}
 """
 
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory):
     """Build the node as a process."""
-    need("Verilator", shutil.which("verilator"))
-    folder = tmp_path_factory.mktemp("participant") / "rtps"
-    shutil.copytree(EXAMPLE, folder, ignore=shutil.ignore_patterns("work"))
-    (folder / "mirror.yaml").write_text(NODE)
-    paths = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    made = subprocess.run(
-        ["make", "FILE=mirror.yaml", "NAME=mirror"],
-        cwd=folder,
-        env={**os.environ, "PATH": paths, "PYTHONPATH": str(Path(__file__).parents[2])},
-        capture_output=True,
-        text=True,
-        timeout=1800,
-        check=False,
-    )
-    assert made.returncode == 0, made.stdout + made.stderr
-    return folder / "work" / "board"
+    return build_board(tmp_path_factory.mktemp("participant"), "rtps", "mirror", NODE)
 
 
 @pytest.fixture
@@ -74,10 +71,15 @@ def start(program):
     """Start the board; its processes end with the test."""
     started = []
 
-    def begin():
+    def begin(faults=0, program=program, port=7510):
         # Slower than the clock says, so that a busy machine keeps up.
-        arguments = ["127.0.0.1", "1000000", "7400", "7510", "7511"]
-        process = subprocess.Popen([program, *arguments], stdout=subprocess.PIPE, text=True)
+        arguments = ["127.0.0.1", "1000000", "7400", str(port), str(port + 1)]
+        process = subprocess.Popen(
+            [program, *arguments],
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "FAULTS": str(faults)},
+        )
         started.append(process)
         assert process.stdout.readline() == "ready\n"
         return process
@@ -119,38 +121,75 @@ def flood(seconds, seed=1):
             time.sleep(0.03)
 
 
+TEXT = {"type": "string", "to": "/text_in", "back": "/text_out"}
+TOPICS = [
+    TEXT,
+    {"type": "imu", "to": "/imu_in", "back": "/imu_out"},
+    {"type": "twist", "to": "/twist_in", "back": "/twist_out"},
+    {"type": "scan", "to": "/scan_in", "back": "/scan_out"},
+]
+
+
+def check_trips(release, topics, count, **options):
+    """Let messages of several topics go to a node and back, at once."""
+    options = {"count": count, "period": 0.1, "depth": 1000, **options}
+    topics = [{**each, **options} for each in topics]
+    # Seconds of the board take many of a busy machine.
+    with Peer(release, "trip", topics=topics, patience=300, linger=60) as peer:
+        assert peer.next(330) == {"begins": True}
+        assert peer.result(1200)["numbers"] == [list(range(count))] * len(topics)
+
+
 @RELEASES
 def test_messages_come_back_in_order(release, start):
     start()
-    options = {"count": 300, "period": 0.1, "depth": 100}
-    topics = [
-        {"type": "string", "to": "/text_in", "back": "/text_out", **options},
-        {"type": "imu", "to": "/imu_in", "back": "/imu_out", **options},
-    ]
-    with Peer(release, "trip", topics=topics) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(300)["numbers"] == [list(range(300))] * 2
+    check_trips(release, TOPICS, 1000)
+
+
+def test_a_bad_network_loses_nothing_of_reliable_topics(start):
+    start(faults=5)
+    check_trips("kilted", TOPICS, 300)
+
+
+def test_peers_come_and_go(start):
+    start()
+    options = {"to": "/text_in", "back": "/text_out", "patience": 60}
+    with Peer("kilted", "come_and_go", count=100, **options) as peer:
+        assert peer.result(1800) == {"back": 100}
+
+
+def test_two_nodes_talk_to_each_other(start, tmp_path):
+    """What the first one publishes is what the second one takes; rclpy is at both ends."""
+    start()
+    start(program=build_board(tmp_path, "rtps", "second", SECOND), port=7512)
+    check_trips("kilted", [{**TEXT, "back": "/text_back"}], 200)
 
 
 def test_a_burst_waits_for_the_accelerator(start):
     start()
     # More than the memory of the topic, sent at once; the writer keeps all until they are there.
-    topic = {"type": "string", "to": "/text_in", "back": "/text_out"}
-    options = {"count": 200, "period": 0, "depth": 1000, "linger": 30}
-    with Peer("kilted", "trip", topics=[{**topic, **options}]) as peer:
-        assert peer.next(90) == {"begins": True}
-        assert peer.result(300)["numbers"] == [list(range(200))]
+    check_trips("kilted", [TEXT], 200, period=0)
 
 
 @RELEASES
 def test_the_node_is_in_the_graph_with_its_topics_and_services(release, start):
     start()
-    wanted = {"node": "mirror", "namespace": "/fpga", "publishers": 2, "topics": ["/text_out"]}
+    wanted = {"node": "mirror", "namespace": "/fpga", "publishers": 4, "topics": ["/text_out"]}
     with Peer(release, "graph", own="watcher", **wanted) as peer:
         result = peer.result()
     assert ["mirror", "/fpga"] in result["nodes"] and result["owners"] == [["mirror", "/fpga"]]
-    assert [name for name, _ in result["publishers"]] == ["/imu_out", "/text_out"]
-    assert [name for name, _ in result["subscriptions"]] == ["/imu_in", "/text_in"]
+    assert [name for name, _ in result["publishers"]] == [
+        "/imu_out",
+        "/scan_out",
+        "/text_out",
+        "/twist_out",
+    ]
+    assert [name for name, _ in result["subscriptions"]] == [
+        "/imu_in",
+        "/scan_in",
+        "/text_in",
+        "/twist_in",
+    ]
     assert [name for name, _ in result["services"]] == ["/mode"]
 
 
@@ -168,27 +207,14 @@ def test_four_clients_of_a_service_at_once(release, start):
 
 def test_a_flood_of_invented_peers_neither_disturbs_nor_keeps_out(start):
     start()
-    topic = {"type": "string", "to": "/text_in", "back": "/text_out"}
-    options = {"count": 50, "period": 0.1, "depth": 100}
-
-    def trip():
-        # Seconds of the board take many of a busy machine.
-        with Peer("kilted", "trip", topics=[{**topic, **options}], patience=300) as peer:
-            assert peer.next(330) == {"begins": True}
-            assert peer.result(120)["numbers"] == [list(range(50))]
-
-    trip()
+    check_trips("kilted", [TEXT], 50)
     flood(5)
-    trip()
+    check_trips("kilted", [TEXT], 50)
 
 
 def test_a_board_that_starts_again_is_found_again(start):
-    topic = {"type": "string", "to": "/text_in", "back": "/text_out"}
-    options = {"count": 20, "period": 0.1, "depth": 100}
     for _ in range(2):
         process = start()
-        with Peer("kilted", "trip", topics=[{**topic, **options}]) as peer:
-            assert peer.next(90) == {"begins": True}
-            assert peer.result(120)["numbers"] == [list(range(20))]
+        check_trips("kilted", [TEXT], 20)
         process.kill()
         process.wait()

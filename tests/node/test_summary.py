@@ -6,7 +6,7 @@ import pytest
 
 from firm_hdl.node.capacity import bytes_on_link
 from firm_hdl.node.frame import HEADER_BYTES
-from firm_hdl.node.summary import summary
+from firm_hdl.node.summary import area_of, facts_of, summary
 from tests.node.samples import read
 
 BEYOND = """\
@@ -78,3 +78,27 @@ publish:
     assert "static_peers 10.0.0.1" in found
     assert "discovery_multicast 7650, discovery 7664, user 7665" in found
     assert "/said over 1317 bytes" in found
+
+
+def test_the_area_of_a_whole_node_is_near_that_of_its_synthesis():
+    text = """
+node: echo
+clock_mhz: 125
+link: {kind: rtps, ethernet: rgmii, mac: "02:00:00:00:00:50", address: 10.0.0.9/24}
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /a: {type: std_msgs/msg/String}
+  /b: {type: geometry_msgs/msg/Twist}
+publish:
+  /c: {type: std_msgs/msg/String}
+  /d: {type: geometry_msgs/msg/Twist}
+"""
+    description = read(text)
+    area = area_of(facts_of(description))
+    assert area["lut"] == pytest.approx(14292, rel=0.03)
+    assert area["ff"] == pytest.approx(12826, rel=0.03)
+    assert f"estimated, without the accelerator: {area['lut']} LUT" in summary(description)
+    # Of a bus of 16 bytes, no converter was measured.
+    wide = facts_of(read(f"bus_bytes: 16\n{text.replace('accelerator', '# ')}"))
+    assert area_of(wide)["without"] == ", without parts that were not measured"
+    assert area_of(wide)["lut"] > 10_000

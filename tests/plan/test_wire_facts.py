@@ -97,6 +97,12 @@ FACTS = {
         {"q": [], "x": 7},
         "00010000 00000000 07",
     ),
+    "padding after an empty sequence is that of the next field": (
+        ROS2,
+        {"q": "float64[]", "x": "float64"},
+        {"q": [], "x": 1.0},
+        "00010000 00000000|00000000 000000000000f03f",
+    ),
     "a sequence aligns its first item": (
         ROS2,
         {"q": "float64[]", "x": "uint8"},

@@ -15,9 +15,10 @@ from firm_hdl.jobs import ExecutorError, ProgramMissingError
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.results.file import ResultsError
 from firm_hdl.verify.results.verdict import Failed, Passed
-from firm_hdl.verify.systems.system import Judged, System
+from firm_hdl.verify.systems.system import System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from tests.depth import by_depth
+from tests.verify.report.samples import a_record
 from tests.verify.samples import own_package
 
 BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
@@ -110,10 +111,9 @@ def test_every_system_runs_even_if_the_first_fails(monkeypatch):
         def __init__(self, name, is_well):
             self.name, self.is_well = name, is_well
 
-        def run(self, recorder):
+        def run(self, writer):
             ran.append(self.name)
-            verdict = Passed(1) if self.is_well else Failed(("",))
-            return [Judged(what="it", verdict=verdict)]
+            return [a_record(verdict=Passed(1) if self.is_well else Failed(("",)))]
 
     made = {name: FixedSystem(name, name != "ts1") for name in ("ts1", "ts3")}
     systems = {name: lambda given, name=name: [made[name]] for name in made}

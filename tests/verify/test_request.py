@@ -16,7 +16,7 @@ from firm_hdl.verify.command import Workload, resolve
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Judged, System
+from firm_hdl.verify.systems.system import System
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from tests.frontend.recordings import make_recording
 from tests.frontend.workspace import make_files
@@ -115,9 +115,10 @@ class FixedSystem(System):
         self.tests = [a_test(system=name)]
         self.options = {f"of {name}": 1}
 
-    def run(self, recorder):
-        recorder.add(a_record(self.tests[0]))
-        return [Judged(what=f"it by {self.name}", verdict=self.verdict)]
+    def run(self, writer):
+        record = a_record(self.tests[0], verdict=self.verdict)
+        writer.add(record)
+        return [record]
 
 
 @pytest.fixture

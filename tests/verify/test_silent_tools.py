@@ -14,15 +14,17 @@ from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.jobs.programs import ProgramMissingError
-from firm_hdl.verify.clients.judge import LibraryComparison
+from firm_hdl.verify.clients.judge import compare
 from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.simulators.programs import Verilator
 from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.depth import by_depth
 from tests.tools import need
 from tests.verify.judged import accept
+from tests.verify.report.samples import a_test
 
 BOOL = "std_msgs/msg/Bool"
 SILENT = {0: "#!/bin/sh\nexit 0\n", 1: "#!/bin/sh\nexit 1\n"}
@@ -164,7 +166,8 @@ def test_library_that_does_not_answer_everything_fails(library_here, is_referenc
         (rosbags, OmitsLastAnswer(rosbags)) if is_reference else (OmitsLastAnswer(rosbags), rosbags)
     )
     message = Library("lyrical").message(BOOL)
-    trial = LibraryComparison(*both, "cdr").judge(message, [{"data": True}, {"data": False}])
+    trial = Trial.of(a_test())
+    compare(*both, message, "cdr", [{"data": True}, {"data": False}], trial)
     (failure,) = trial.verdict.failures
     assert failure.startswith("few gave ") and " questions" in failure
 

@@ -118,24 +118,17 @@ def test_is_the_same_each_time_and_has_no_paths() -> None:
     assert "test_vhdl" not in "".join(first.files.values())
 
 
-def test_gives_a_header_and_unsigned_ports() -> None:
-    text = convert(Counter(), name="c", unsigned_ports=True, header="Hello.\n\nYou.").files["c.vhd"]
-    assert text.startswith("-- Hello.\n--\n-- You.\n")
-    assert "limit  : in  unsigned(3 downto 0);" in text
-
-
-def test_each_entity_has_the_header_and_only_ports_outside_are_unsigned_by_option() -> None:
+def test_each_entity_has_the_header_and_ports_outside_are_vectors() -> None:
     top = Module()
     top.submodules.inner = inner = Counter()
     a = Signal(4, name="a")
     top.d.comb += inner.limit.eq(a)
-    for option, kind in ((False, "std_logic_vector"), (True, "unsigned")):
-        files = convert(top, ports=[a], unsigned_ports=option, header="Mine.").files
-        assert list(files) == ["firm_hdl_pkg.vhd", "top_inner.vhd", "top.vhd"]
-        heads = [text.startswith("-- Mine.\n-- Module ") for text in files.values()]
-        assert heads == [False, True, True]
-        assert re.search(rf"\ba +: in +{kind}\(3 downto 0\)", files["top.vhd"])
-        assert re.search(r" : in +unsigned\(3 downto 0\)", files["top_inner.vhd"])
+    files = convert(top, ports=[a], header="Mine.\n\nYours.").files
+    assert list(files) == ["firm_hdl_pkg.vhd", "top_inner.vhd", "top.vhd"]
+    head = "-- Mine.\n--\n-- Yours.\n-- Module "
+    assert [text.startswith(head) for text in files.values()] == [False, True, True]
+    assert re.search(r"\ba +: in +std_logic_vector\(3 downto 0\)", files["top.vhd"])
+    assert re.search(r" : in +unsigned\(3 downto 0\)", files["top_inner.vhd"])
 
 
 def test_names_are_legal_and_never_merged(tmp_path: Path) -> None:

@@ -172,19 +172,20 @@ def test_nothing_else_has_the_name_of_a_component(tmp_path: Path) -> None:
     analyse(vhdl, tmp_path)
 
 
-@pytest.mark.parametrize("unsigned_ports", [False, True])
-def test_an_output_is_converted_if_an_instance_has_another_type(unsigned_ports: bool) -> None:
+def test_an_output_is_converted_if_an_instance_has_another_type() -> None:
     top, inner, a = Module(), Module(), Signal(4, name="a")
     foreign, below, bit = Signal(4, name="f"), Signal(4, name="b"), Signal(name="c")
     top.submodules.u = Instance("unit", i_a=a, o_q=foreign, o_p=bit)
     inner.d.comb += below.eq(a + 1)
+    deep = Signal(4, name="d")
+    inner.submodules.v = Instance("unit", i_a=a, o_q=deep)
     top.submodules.inner = inner
-    files = convert(top, ports=[a, foreign, below, bit], unsigned_ports=unsigned_ports).files
+    files = convert(top, ports=[a, foreign, below, bit, deep]).files
     text = files["top.vhd"].partition("\nbegin\n")[2]
     # Ports of submodules are unsigned, and those of components vectors; a bit has one type.
-    assert ("f <= unsigned(f_i);" in text) == unsigned_ports == ("f_i : std" in files["top.vhd"])
-    assert ("b <= std_logic_vector(b_i);" in text) == (not unsigned_ports)
-    assert text.count("<=") == 1 and "q => f" in text and "p => c" in text
+    assert "d <= unsigned(d_i);" in files["top_inner.vhd"]
+    assert "d <= std_logic_vector(d_i);" in text and "b <= std_logic_vector(b_i);" in text
+    assert text.count("<=") == 2 and "q => f" in text and "p => c" in text
 
 
 def test_fields_and_values_of_enumerations_are_read_by_name() -> None:

@@ -3,6 +3,9 @@
 // board ADDRESS CYCLES PORT...: the node has this IPv4 address and these ports, the first of which
 // takes part in the group of discovery. The clock runs at CYCLES per second at most, and as fast as
 // the machine can while there is something to do. Runs until it is killed.
+//
+// With FAULTS=5 in the environment, 5 of 100 datagrams are lost, 5 come twice, and 5 come after the
+// one behind them, in each direction.
 
 #include <arpa/inet.h>
 #include <poll.h>
@@ -14,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "Vnode.h"
@@ -29,6 +33,27 @@ struct Datagram {
   uint32_t address;
   uint16_t from, to;
   std::vector<uint8_t> bytes;
+};
+
+// What a bad network does with datagrams on their way.
+class Faults {
+ public:
+  template <typename Deliver>
+  void pass(const Datagram& datagram, Deliver deliver) {
+    const int dice = percent_ ? std::rand() % 100 : 100;
+    if (dice < percent_) return;
+    if (dice >= 2 * percent_ && dice < 3 * percent_ && !late_) {
+      late_ = datagram;
+      return;
+    }
+    deliver(datagram);
+    if (dice < 2 * percent_) deliver(datagram);
+    if (late_) deliver(*late_), late_.reset();
+  }
+
+ private:
+  const int percent_ = std::getenv("FAULTS") ? std::atoi(std::getenv("FAULTS")) : 0;
+  std::optional<Datagram> late_;
 };
 
 double seconds() {
@@ -67,6 +92,7 @@ int main(int argc, char** argv) {
   Vnode node;
   std::deque<Datagram> to_node;
   std::vector<uint8_t> from_node;
+  Faults coming, going;
   size_t at = 0;
   node.aclk = 0;
   node.aresetn = 0;
@@ -87,8 +113,9 @@ int main(int argc, char** argv) {
           ssize_t size = recvfrom(sockets[i].fd, buffer, sizeof buffer, 0,
                                   reinterpret_cast<sockaddr*>(&from), &length);
           if (size <= 0) break;
-          to_node.push_back({ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), ports[i],
-                             {buffer, buffer + size}});
+          coming.pass({ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), ports[i],
+                       {buffer, buffer + size}},
+                      [&](const Datagram& datagram) { to_node.push_back(datagram); });
           idle = 0;
         }
       }
@@ -117,12 +144,15 @@ int main(int argc, char** argv) {
         from_node.push_back(node.udp_tx_data);
         if (node.udp_tx_last) {
           if (from_node.size() != node.udp_tx_length) std::fprintf(stderr, "a wrong length\n");
-          sockaddr_in to{};
-          to.sin_family = AF_INET;
-          to.sin_port = htons(node.udp_tx_dst_port);
-          to.sin_addr.s_addr = htonl(node.udp_tx_ip_address);
-          sendto(sockets[1].fd, from_node.data(), from_node.size(), 0,
-                 reinterpret_cast<sockaddr*>(&to), sizeof to);
+          const uint16_t port = node.udp_tx_dst_port;
+          going.pass({node.udp_tx_ip_address, 0, port, std::move(from_node)}, [&](const Datagram& datagram) {
+            sockaddr_in to{};
+            to.sin_family = AF_INET;
+            to.sin_port = htons(datagram.to);
+            to.sin_addr.s_addr = htonl(datagram.address);
+            sendto(sockets[1].fd, datagram.bytes.data(), datagram.bytes.size(), 0,
+                   reinterpret_cast<sockaddr*>(&to), sizeof to);
+          });
           from_node.clear();
         }
       }

@@ -26,7 +26,14 @@ from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, to_yaml
 from firm_hdl.wire import lay_out
 
-__all__ = ["DATASHEET", "render", "size_text", "sums_of", "write"]
+__all__ = [
+    "DATASHEET",
+    "how_text",
+    "render",
+    "size_text",
+    "sums_of",
+    "write",
+]
 
 DATASHEET = "datasheet.html"
 
@@ -69,7 +76,7 @@ def write(
                 "for 1 Gbit/s, hardest packet tried",
             ),
             *(
-                (f"{each['lut']:,} LUT", f"{way}, {_how(each)}")
+                (f"{each['lut']:,} LUT", f"{way}, {how_text(each).partition(':')[0]}")
                 for way, each in manifest["estimates"].items()
             ),
         ],
@@ -99,7 +106,7 @@ def write(
                 f"{each['lut']:,}",
                 f"{each['ff']:,}",
                 f"{each['mhz']:.0f}",
-                _how(each, plan.wire),
+                how_text(each),
             )
             for way, each in manifest["estimates"].items()
         ],
@@ -133,10 +140,9 @@ def size_text(least: int | None, most: int | None) -> str:
     return f"from {least:,}" if most is None else f"{least:,} to {most:,}"
 
 
-def _how(estimate: Mapping[str, Any], wire: str = "") -> str:
-    if estimate["is_same"]:
-        return "measured"
-    return f"estimated: {estimate['type']}" if wire else "estimated"
+def how_text(estimate: Mapping[str, Any]) -> str:
+    """Return how the figures of an estimate are known."""
+    return "measured" if estimate["is_same"] else f"estimated: {estimate['type']}"
 
 
 def _port_groups(manifest: Mapping[str, Any]) -> Iterator[dict[str, Any]]:

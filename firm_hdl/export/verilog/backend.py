@@ -48,7 +48,9 @@ def write(converters: Converters) -> Output:
             section[direction]["template"] = f"{module}.veo"
             files[f"{module}.veo"] = template(direction, instances[direction], header=header)
     if "tools" in converters.options.extras:
-        files[_WAIVERS] = waivers(module_name(name, each) for each in DIRECTIONS)
+        modules = [module_name(name, each) for each in DIRECTIONS]
+        registers = [module_name(name, each, "registers") for each in converters.registers]
+        files[_WAIVERS] = waivers([*modules, *registers])
     return Output(files=files, manifest={"converters": section}, instances=instances)
 
 

@@ -120,6 +120,8 @@ def to_vhdl(converters: Converters) -> Output:
         way: parts.core(converters.circuits[way], f"{parts.base}_{way}_flat", converters.steps(way))
         for way in DIRECTIONS
     }
+    for way, circuit in converters.register_circuits.items():
+        parts.core(circuit, f"{parts.base}_{way}_registers")
     ports = converters.options.ports
     if ports == "records":
         _add_records(parts, converters, cores)

@@ -49,6 +49,7 @@ def bench_files(
     vhdl_files: Sequence[str],
     header: str,
     more: Sequence[str] = (),
+    verilog_tool: str = "iverilog",
 ) -> dict[str, str]:
     """Write the benches of a node, the frames, and the scripts that run them.
 
@@ -69,6 +70,8 @@ def bench_files(
         Lines of a comment at the head of each file.
     more : sequence of str
         More files of Verilog.
+    verilog_tool : "iverilog" or "verilator"
+        What runs the bench in Verilog.
 
     Returns
     -------
@@ -84,6 +87,8 @@ def bench_files(
         "frames_file": FRAMES,
         "header": header.splitlines(),
         "more": more,
+        "tool": verilog_tool,
+        "title": {"iverilog": "Icarus Verilog", "verilator": "Verilator"}[verilog_tool],
         "standard": 2012 if any(file.endswith(".sv") for file in more) else 2005,
         "folders": list(dict.fromkeys(file.rpartition("/")[0] for file in more)),
     }
@@ -95,7 +100,7 @@ def bench_files(
         "vhdl/bench_files.txt": "".join(f"{file}\n" for file in bench),
         "vhdl/run_ghdl.sh": _render("run_ghdl.sh", files=[*vhdl_files, *bench], **values),
         f"{top}.v": _render("bench.v", **values),
-        "run_iverilog.sh": _render("run_iverilog.sh", **values),
+        f"run_{verilog_tool}.sh": _render("run_verilog.sh", **values),
     }
 
 

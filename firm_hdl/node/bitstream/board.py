@@ -25,6 +25,9 @@ __all__ = ["Board", "board_list", "board_names", "read_board"]
 
 MOST_BYTES = 1 << 18
 
+LINKS = ("uart", "rgmii")
+"""Links with pins of their own: names of a board's groups, and how names of ports begin."""
+
 _BOARDS = Path(__file__).with_name("boards")
 
 _ELECTRICAL = {
@@ -101,7 +104,7 @@ def board_list() -> Iterator[str]:
     """Yield a line for each board: its name, what it is, and the links that it has pins for."""
     for name in board_names():
         board = read_board(name)
-        links = " ".join(each for each in board.groups() if each in ("uart", "rgmii"))
+        links = " ".join(each for each in board.groups() if each in LINKS)
         yield f"{board.name:18}  {board.title:50}  {links}"
 
 

@@ -217,7 +217,7 @@ def _sources(description: Description, module: str, folder: Path) -> list[str]:
     if description.hdl is not None:
         # VHDL is there as for a simulation: gate by gate. Yosys itself reads less of SystemVerilog.
         is_slang = description.hdl.language == "systemverilog"
-        read = f"read_slang --top {description.hdl.entity}" if is_slang else "read_verilog -sv"
+        read = f"read_slang --top {accelerator.entity}" if is_slang else "read_verilog -sv"
         for file, text in accelerator.modules.items():
             (folder / file).write_bytes(text.encode("utf-8", "surrogateescape"))
             reads.append(f"{read} {file}")

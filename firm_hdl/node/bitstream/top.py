@@ -9,7 +9,7 @@ from math import ceil, log2
 from typing import Any, TypeAlias
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Span
-from firm_hdl.node.bitstream.board import Board
+from firm_hdl.node.bitstream.board import LINKS, Board
 from firm_hdl.node.bitstream.families import MOST_DEVIATION, Pin, Pll
 from firm_hdl.node.description import Description
 
@@ -21,10 +21,6 @@ Problem: TypeAlias = Callable[[Span | None, str], None]
 RESET_SECONDS = 20e-6
 """How long the node is reset after the start. Block RAMs of iCE40 have their contents only 10 us
 after it."""
-
-LINKS = ("uart", "rgmii")
-
-"""Links with pins of their own: names of a board's groups, and how names of ports begin."""
 
 NONCE = "nonce"
 """A port of a participant of ROS 2 without pins: at 0, the time of the first datagram counts."""

@@ -56,7 +56,7 @@ class SimulatedBoard(Board):
     report : callable or None
         Told the stages of a compilation.
     wave : Path or None
-        A file that the waveform is written to, as VCD.
+        A file that the waveform is written to: ``.fst`` is FST, any other VCD.
 
     Raises
     ------
@@ -93,6 +93,8 @@ class SimulatedBoard(Board):
         self._engine, self._report = engine, report
         self._wave = wave
         if wave is not None:
+            if wave.suffix == ".ghw":
+                raise UserError(f"cannot write '{wave}': Verilator has the formats .vcd and .fst")
             try:
                 with wave.open("ab"):
                     pass

@@ -208,7 +208,7 @@ def status_line(bridge: Bridge, rates: tuple[float, ...]) -> str:
     dropped = bridge.counters.dropped.total()
     parts = [
         f"{bridge.description.node}",
-        "ready" if bridge.side.is_ready else "no board",
+        "ready" if bridge.side.is_ready else "waits for the board",
         f"to board {rates[0]:.0f}/s",
         f"to graph {rates[1]:.0f}/s",
         f"dropped {dropped + sum(value for _, value in _drops(bridge))}",

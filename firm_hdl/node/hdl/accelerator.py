@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
 
 from amaranth.hdl import ClockSignal, Instance, Module, ResetSignal
 from amaranth.lib import wiring
 
+from firm_hdl.errors import UserError
 from firm_hdl.export.component import parts_of
 from firm_hdl.node.accelerator import accelerator_signature
 from firm_hdl.node.description import Description, Hdl
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
-from firm_hdl.node.hdl.sources import read_sources
+from firm_hdl.node.hdl.records import (
+    NO_FILES,
+    Generated,
+    generated_packages,
+    message_records,
+    record_ports,
+    wrapped,
+)
+from firm_hdl.node.hdl.sources import read_sources, refused
 from firm_hdl.node.hdl.verilog import checked_verilog, preprocessed
 from firm_hdl.node.hdl.vhdl import checked_vhdl, verilog_of_vhdl
 
@@ -34,6 +44,10 @@ class HdlAccelerator(wiring.Component):
     ----------
     sources : mapping of str to bytes
         The files by name, in compile order.
+    ports : tuple of AcceleratorPort
+        The plain ports, of the entity or of the wrapper around it.
+    generated : Generated
+        The wrapper, and packages, if the entity has records as ports.
 
     Members
     -------
@@ -53,11 +67,25 @@ class HdlAccelerator(wiring.Component):
         self.hdl: Hdl = description.hdl
         self._description = description
         self.sources: Mapping[str, bytes] = read_sources(description)
-        wanted = accelerator_ports(description)
         check = checked_vhdl if self.hdl.language == "vhdl" else checked_verilog
-        self.ports: tuple[AcceleratorPort, ...] = check(description, self.sources, wanted)
+        if self.hdl.has_records:
+            found, self.generated = _with_records(description, self.sources, check)
+        else:
+            wanted = accelerator_ports(description)
+            found, self.generated = check(description, self.sources, wanted, {}), NO_FILES
+        there = {port.name for port in found}
+        self.ports: tuple[AcceleratorPort, ...] = tuple(
+            port
+            for port in accelerator_ports(description)
+            if port.name in there or not port.is_optional
+        )
         super().__init__(accelerator_signature(description))
         self._MustUse__used = True
+
+    @property
+    def entity(self) -> str:
+        """Name of the entity or module with plain ports."""
+        return self.generated.entity or self.hdl.entity
 
     @cached_property
     def modules(self) -> Mapping[str, str]:
@@ -69,7 +97,7 @@ class HdlAccelerator(wiring.Component):
             If the VHDL has something that cannot be translated.
         """
         if self.hdl.language == "vhdl":
-            text = verilog_of_vhdl(self._description, self.sources, self.ports)
+            text = verilog_of_vhdl(self._description, self.sources, self.ports, self.generated)
             return {"accelerator.sv": text}
         suffix = "v" if self.hdl.language == "verilog" else "sv"
         return {f"accelerator.{suffix}": self._preprocessed[0]}
@@ -81,7 +109,7 @@ class HdlAccelerator(wiring.Component):
 
     @cached_property
     def _preprocessed(self) -> tuple[str, dict[str, bytes]]:
-        return preprocessed(self._description)
+        return preprocessed(self._description, self.generated)
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -93,5 +121,23 @@ class HdlAccelerator(wiring.Component):
         for port in self.ports:
             if port.member:
                 connections[f"{port.direction[0]}_{port.name}"] = values[port.member]
-        m.submodules.entity = Instance(self.hdl.entity, **connections)
+        m.submodules.entity = Instance(self.entity, **connections)
         return m
+
+
+def _with_records(
+    description: Description, sources: Mapping[str, bytes], check: Callable[..., Any]
+) -> tuple[tuple[AcceleratorPort, ...], Generated]:
+    """Check an entity with records as ports; return its ports, and the files around it."""
+    assert description.hdl is not None
+    language = description.hdl.language
+    try:
+        records = message_records(description, language)
+    except UserError as error:
+        raise refused(description, str(error)) from None
+    packages = generated_packages(records, language)
+    for file in sources:
+        if os.path.basename(file) in packages:
+            raise refused(description, f"firm-hdl adds '{file}' itself: leave it out")
+    found = check(description, sources, record_ports(description, language, records), packages)
+    return found, wrapped(description, records, packages, found)

@@ -32,6 +32,8 @@ class AcceleratorFiles:
     ----------
     language, entity : str
         Empty if the accelerator is in Amaranth, or if there is none.
+    wrapper : str
+        The entity with plain ports around one with records; empty if there is none.
     texts : mapping of str to str
         Texts by path in the folder, in compile order. Bytes that are not UTF-8 are surrogates.
     headers : mapping of str to str
@@ -42,15 +44,23 @@ class AcceleratorFiles:
 
     language: str = ""
     entity: str = ""
+    wrapper: str = ""
     texts: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     folders: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def verilog_tool(self) -> str:
+        """What runs a bench in Verilog: Icarus Verilog has no structs in packages."""
+        return "verilator" if self.wrapper and self.language != "vhdl" else "iverilog"
 
     def facts(self) -> dict[str, Any] | None:
         """Describe the files for the manifest."""
         if not self.language:
             return None
-        return {"language": self.language, "entity": self.entity, "files": list(self.texts)}
+        ports = {"ports": "records", "wrapper": self.wrapper} if self.wrapper else {}
+        files = list(self.texts)
+        return {"language": self.language, "entity": self.entity, **ports, "files": files}
 
     def core(self, core: Mapping[str, Any]) -> dict[str, Any]:
         """Add the files to each target of a core of FuseSoC.
@@ -68,6 +78,8 @@ class AcceleratorFiles:
             files.append({header: options})
         found["filesets"]["accelerator"] = {"files": files, "file_type": _TYPES[self.language]}
         found["targets"].pop("sim_verilog" if self.language == "vhdl" else "sim", None)
+        if self.verilog_tool == "verilator":
+            found["targets"].pop("sim_verilog", None)
         for name, target in found["targets"].items():
             found["targets"][name] = {**target, "filesets": ["accelerator", *target["filesets"]]}
         return found
@@ -120,10 +132,17 @@ def accelerator_files(description: Description, accelerator: Any) -> Accelerator
         ]
         # A name made by a macro is not among the names.
         found[place(header)] = place(own[0] if own else os.path.dirname(header))
+    generated = accelerator.generated
+    around = "vhdl" if language == "vhdl" else "systemverilog"
+    before, after = (
+        {f"{around}/{file}": text for file, text in files.items()}
+        for files in (generated.packages, generated.wrapper)
+    )
     return AcceleratorFiles(
         language=language,
         entity=accelerator.hdl.entity,
-        texts=texts(sources),
+        wrapper=generated.entity,
+        texts={**before, **texts(sources), **after},
         headers=texts(headers),
         folders=found,
     )

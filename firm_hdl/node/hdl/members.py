@@ -12,7 +12,7 @@ from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
 from firm_hdl.plan import Leaf, build_plan
 from firm_hdl.wire import lay_out
 
-__all__ = ["AcceleratorStream", "accelerator_streams", "members_text"]
+__all__ = ["AcceleratorStream", "accelerator_streams", "described", "members_text"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,12 +73,13 @@ def _streams(description: Description) -> Iterator[AcceleratorStream]:
                     message=store.message.name,
                     member=member,
                     direction=direction,
-                    type=_described(plan.leaves[index]),
+                    type=described(plan.leaves[index]),
                     ports=tuple(by_stream[member]),
                 )
 
 
-def _described(leaf: Leaf) -> str:
+def described(leaf: Leaf) -> str:
+    """Say what a field carries, for people."""
     if leaf.kind == "items":
         return f"items of {leaf.type}, {leaf.lanes} in a transfer"
     return (

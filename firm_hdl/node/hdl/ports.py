@@ -6,8 +6,8 @@ So an accelerator beside a node and one inside it have the same ports.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from firm_hdl.node.description import Description
@@ -19,7 +19,7 @@ __all__ = ["AcceleratorPort", "accelerator_ports"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcceleratorPort:
-    """A port of an accelerator, a plain vector.
+    """A port of an accelerator: a plain vector, or a record.
 
     Attributes
     ----------
@@ -34,6 +34,10 @@ class AcceleratorPort:
         empty for clock and reset.
     is_optional : bool
         The accelerator may do without it.
+    type : str
+        The type of a record, with its package; empty for a plain vector.
+    parts : mapping of str to int
+        Widths of the fields of a record, such as ``linear.x.valid``, in order.
     """
 
     name: str
@@ -42,6 +46,8 @@ class AcceleratorPort:
     signed: bool = False
     member: str = ""
     is_optional: bool = False
+    type: str = ""
+    parts: Mapping[str, int] = field(default_factory=dict)
 
 
 def accelerator_ports(description: Description) -> tuple[AcceleratorPort, ...]:

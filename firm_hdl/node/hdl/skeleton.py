@@ -14,8 +14,9 @@ from firm_hdl.errors import UserError
 from firm_hdl.files import write_new
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.description import Description
-from firm_hdl.node.hdl.members import AcceleratorStream, accelerator_streams
+from firm_hdl.node.hdl.members import AcceleratorStream, accelerator_streams, described
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
+from firm_hdl.node.hdl.records import message_records, record_ports
 
 __all__ = ["NEW_LANGUAGES", "new_accelerator"]
 
@@ -28,8 +29,13 @@ NEW_LANGUAGES = {
 }
 """Suffix of a file by the name of its language."""
 
+RECORDS = {"vhdl": "records", "systemverilog": "structs"}
+"""What a language calls the records that its ports may have."""
 
-def new_accelerator(description: Description, language: str | None = None) -> tuple[str, str]:
+
+def new_accelerator(
+    description: Description, language: str | None = None, *, with_records: bool = False
+) -> tuple[str, str]:
     """Write the skeleton of an accelerator into the folder of a description.
 
     The description may already name the file.
@@ -38,6 +44,8 @@ def new_accelerator(description: Description, language: str | None = None) -> tu
     ----------
     language : str or None
         A key of `NEW_LANGUAGES`. `None`: what the description says, else ``"amaranth"``.
+    with_records : bool
+        Messages are ports of records or structs. The description may say so, too.
 
     Returns
     -------
@@ -55,6 +63,13 @@ def new_accelerator(description: Description, language: str | None = None) -> tu
     wanted = {"sv": "systemverilog"}.get(language or "", language) or said or "amaranth"
     if said is not None and wanted != said:
         raise UserError(f"the accelerator of the description is in {said}, not in {wanted}")
+    if with_records and wanted not in RECORDS:
+        raise UserError(f"{wanted} has no ports of records: the languages are vhdl and sv")
+    if with_records and hdl is not None and not hdl.has_records:
+        raise UserError(
+            f"the accelerator of the description has plain ports: add 'ports: {RECORDS[wanted]}'"
+        )
+    with_records = with_records or (hdl is not None and hdl.has_records)
     name = identifier(description.node)
     if wanted == "amaranth":
         module, _, path = description.accelerator.partition(":")
@@ -66,12 +81,15 @@ def new_accelerator(description: Description, language: str | None = None) -> tu
     else:
         file = hdl.files[-1] if hdl else f"{name}.{NEW_LANGUAGES[wanted]}"
         entity = hdl.entity if hdl else name
-        if wanted == "vhdl":
+        if with_records:
+            lines = _with_records(description, entity, wanted)
+        elif wanted == "vhdl":
             lines = _vhdl(description, entity)
         else:
             lines = _verilog(description, entity, "wire" if wanted == "verilog" else "logic")
         text = "".join(f"{line}\n" for line in lines)
-        value = f"{{{wanted}: {file}, entity: {entity}}}"
+        ports = f", ports: {RECORDS[wanted]}" if with_records else ""
+        value = f"{{{wanted}: {file}, entity: {entity}{ports}}}"
     place = os.path.normpath(os.path.join(description.folder, file))
     try:
         write_new(place, text.encode())
@@ -165,11 +183,15 @@ def _declared(
 ) -> Iterator[str]:
     """Yield the lines of a declaration of ports, whose last one has no separator."""
     last = [port for port, _ in rows if port is not None][-1]
+    was_port = True
     for port, comment in rows:
         if port is None:
-            yield ""
+            if was_port:
+                yield ""
             yield f"    {comment}"
+            was_port = False
             continue
+        was_port = True
         line = f"    {text[port.name]}{'' if port is last else end}"
         yield f"{line}  {mark} {comment}" if comment else line
 
@@ -219,6 +241,72 @@ def _verilog(description: Description, entity: str, kind: str) -> Iterator[str]:
                 value = f"{port.width}'b{value}" if port.width == 1 else f"{port.width}'d{value}"
             yield f"  assign {port.name:<{width}} = {value};"
     yield from ("", "endmodule")
+
+
+def _with_records(description: Description, entity: str, language: str) -> Iterator[str]:
+    """Yield the lines of a file whose ports are records or structs."""
+    is_vhdl = language == "vhdl"
+    mark = "--" if is_vhdl else "//"
+    records = message_records(description, language)
+    ports = record_ports(description, language, records)
+    names = max(len(port.name) for port in ports)
+
+    def declared(port: AcceleratorPort) -> str:
+        if is_vhdl:
+            bits = f"std_logic_vector({port.width - 1} downto 0)"
+            kind = port.type or ("std_logic" if port.width == 1 else bits)
+            return f"{port.name:<{names}} : {port.direction:<3} {kind}"
+        bits = "logic" if port.width == 1 else f"logic [{port.width - 1}:0]"
+        return f"{port.direction + 'put':<6} {port.type or bits} {port.name}"
+
+    rows: list[tuple[AcceleratorPort | None, str]] = []
+    about = {
+        "aclk": "Clock; the rising edge is active.",
+        "aresetn": "Synchronous reset, active low.",
+    }
+    rows += [
+        (port, about.get(port.name, "Time of the node. Leave it out or use it."))
+        for port in ports
+        if not port.type
+    ]
+    topics = {f"{topic.kind}.{topic.port}": topic.name for topic in description.topics}
+    for each in records:
+        verb = "takes" if each.is_taken else "offers"
+        topic = topics[".".join(each.port.member.split(".")[:2])]
+        rows.append((None, f"{mark} It {verb} {topic}: {each.port.message.name}"))
+        for node in each.tree.root.leaves():
+            assert node.leaf is not None
+            what = described(each.port.plan.leaves[node.leaf])
+            rows.append((None, f"{mark}   {node.access}: {what}"))
+        rows += [(p, "") for p in ports if p.name in (each.port.name, each.port.ready)]
+    yield from (f"{mark} {line}" for line in _head(description))
+    if is_vhdl:
+        yield from ("library ieee;", "use ieee.std_logic_1164.all;", "use ieee.numeric_std.all;")
+        yield from ("", f"entity {entity} is", "  port (")
+    else:
+        yield f"module {entity} ("
+    text = {port.name: declared(port) for port in ports}
+    yield from _declared(rows, text, ";" if is_vhdl else ",", mark)
+    if is_vhdl:
+        yield from ("  );", "end entity;", "", f"architecture rtl of {entity} is", "begin")
+    else:
+        yield ");"
+    sign, start = ("<=", "  ") if is_vhdl else ("=", "  assign ")
+    by_member = {each.port.member: each for each in records}
+    loops = {f"subscribe.{a.port}": f"publish.{b.port}" for a, b in description.loops()}
+    loops |= {goes: came for came, goes in loops.items()}
+    yield ""
+    for each in records:
+        other = by_member.get(loops.get(each.port.member, ""))
+        place = f"{'work.' if is_vhdl else ''}{each.package}{'.' if is_vhdl else '::'}"
+        base = each.tree.package.base.upper()
+        if each.is_taken:
+            value = other.port.ready if other else f"{place}{base}_ALL_READY"
+            yield f"{start}{each.port.ready} {sign} {value};"
+        else:
+            value = other.port.name if other else f"{place}{base}_IDLE"
+            yield f"{start}{each.port.name} {sign} {value};"
+    yield from ("", "end architecture;" if is_vhdl else "endmodule")
 
 
 def _amaranth(description: Description, name: str) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.files import read_file
@@ -13,17 +13,21 @@ from firm_hdl.node.hdl.ports import AcceleratorPort
 
 __all__ = [
     "check_ports",
+    "listed",
     "path_of",
+    "places_of",
     "problems_of",
     "read_sources",
     "refused",
     "refused_twice",
+    "span_of",
     "text_of",
 ]
 
 MOST_BYTES = 1 << 24
 
 _PLACE = re.compile(r"(?:%Error(?:-\w+)?: )?([^\n:]+):(\d+):(?:(\d+):)? ?(?:error: ?)?(.*)")
+_PACKAGE = re.compile(r"\b\w+_(?:cdr|ros1)_\d+_(?:sv_)?pkg\b")
 _MOST_NAMED = 8
 _LIBRARY = re.compile(r"^\S*/ieee\w*/(\w+?)(?:-body)?\.vhdl:\d+:\d+:", re.MULTILINE)
 
@@ -89,6 +93,7 @@ def problems_of(
     sources : mapping of str to bytes
         The files by name.
     """
+    assert description.hdl is not None
     by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
     problems: list[Diagnostic] = []
     for line in said.splitlines():
@@ -98,14 +103,11 @@ def problems_of(
         file = by_path.get(os.path.abspath(found[1]))
         if file is None:
             continue
-        text = text_of(sources[file])
-        starts = [0, *(match.end() for match in re.finditer("\n", text))]
-        row = min(int(found[2]), len(starts))
-        start = min(starts[row - 1] + max(0, int(found[3] or 1) - 1), len(text))
-        word = re.compile(r"\w+|.?").match(text, start)
-        source = Source(name=path_of(description, file), text=text)
-        span = Span(source=source, start=start, end=word.end() if word else start)
-        problem = Diagnostic(message=found[4], span=span)
+        span = span_of(description, file, sources[file], int(found[2]), int(found[3] or 1))
+        hint = ""
+        if not description.hdl.has_records and _PACKAGE.search(found[4]):
+            hint = "; with 'ports: records' in its description, firm-hdl adds the packages"
+        problem = Diagnostic(message=f"{found[4]}{hint}", span=span)
         if problem not in problems:
             problems.append(problem)
     if problems:
@@ -114,20 +116,66 @@ def problems_of(
         # `float_pkg` is an instance of `float_generic_pkg`.
         package = library[1].replace("_generic", "")
         users = [f for f, data in sources.items() if package in text_of(data).lower()]
-        where = f", used in {_listed(users)}" if users else ""
+        where = f", used in {listed(users)}" if users else ""
         return refused(description, f"{tool} cannot synthesize ieee's package '{package}'{where}")
     lines = [line for line in said.splitlines() if line.strip()]
     return refused(description, f"{tool} failed: {' '.join(lines[:3])[:400]}")
 
 
+def span_of(description: Description, file: str, data: bytes, row: int, column: int) -> Span:
+    """Return the word at a place in a file that a tool printed, both counted from 1."""
+    text = text_of(data)
+    starts = [0, *(match.end() for match in re.finditer("\n", text))]
+    start = min(starts[min(row, len(starts)) - 1] + max(0, column - 1), len(text))
+    word = re.compile(r"\w+|.?").match(text, start)
+    source = Source(name=path_of(description, file), text=text)
+    return Span(source=source, start=start, end=word.end() if word else start)
+
+
+def places_of(
+    description: Description, sources: Mapping[str, bytes], names: Iterable[str]
+) -> dict[str, Span]:
+    """Return where the entity declares its ports; at ``""``, the name of the entity itself.
+
+    Parameters
+    ----------
+    names : iterable of str
+        What is not found is not in the result.
+    """
+    assert description.hdl is not None
+    is_vhdl = description.hdl.language == "vhdl"
+    ignored = re.compile(r"--[^\n]*|/\*.*?\*/" if is_vhdl else r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+    flags = re.IGNORECASE if is_vhdl else 0
+    entity = re.escape(description.hdl.entity)
+    head = rf"\bentity\s+({entity})\s+is\b" if is_vhdl else rf"\bmodule\s+(?:\w+\s+)?({entity})\b"
+    found: dict[str, Span] = {}
+    for file, data in sources.items():
+        source = Source(name=path_of(description, file), text=text_of(data))
+        # As long as the text.
+        code = ignored.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
+        if (unit := re.search(head, code, flags)) is None:
+            continue
+        found[""] = Span(source=source, start=unit.start(1), end=unit.end(1))
+        for name in filter(None, names):
+            if at := re.compile(rf"\b{re.escape(name)}\b", flags).search(code, unit.end()):
+                found[name] = Span(source=source, start=at.start(), end=at.end())
+        break
+    return found
+
+
 def check_ports(
     description: Description,
+    sources: Mapping[str, bytes],
     found: Sequence[AcceleratorPort],
     wanted: Sequence[AcceleratorPort],
-    *,
-    ignores_case: bool,
+    more_problems: Mapping[str, str] | None = None,
 ) -> tuple[AcceleratorPort, ...]:
     """Compare the ports of an entity with those that it must have.
+
+    Parameters
+    ----------
+    more_problems : mapping of str to str
+        What else is wrong with ports, by their names.
 
     Returns
     -------
@@ -137,10 +185,11 @@ def check_ports(
     Raises
     ------
     DefinitionError
-        At the accelerator in the description; each problem by itself.
+        Each problem by itself, at the port, or else at the entity.
     """
     assert description.hdl is not None
     entity = description.hdl.entity
+    ignores_case = description.hdl.language == "vhdl"
 
     def key(name: str) -> str:
         return name.lower() if ignores_case else name
@@ -151,22 +200,28 @@ def check_ports(
     missing = [p.name for k, p in needed.items() if k not in there and not p.is_optional]
     more = [port.name for name, port in there.items() if name not in needed]
     if missing:
-        problems.append(f"'{entity}' has no port {_listed(missing)}")
+        problems.append(("", f"'{entity}' has no port {listed(missing)}"))
     if more:
-        problems.append(f"the description has no member for the port {_listed(more)} of '{entity}'")
+        message = f"the description has no member for the port {listed(more)} of '{entity}'"
+        problems.append((more[0], message))
     for name, port in there.items():
         want = needed.get(name)
         if want is None:
             continue
+        named = f"port '{port.name}' of '{entity}'"
         if port.direction != want.direction:
-            problems.append(f"port '{port.name}' of '{entity}' must be an {want.direction}put")
-        elif port.width != want.width:
-            problems.append(
-                f"port '{port.name}' of '{entity}' must have {_bits(want.width)}, not {port.width}"
-            )
+            problems.append((port.name, f"{named} must be an {want.direction}put"))
+        if port.width != want.width:
+            has = f"{_bits(want.width)}, not {port.width}"
+            kind = f"the type {want.type}, which has {has}" if want.type else has
+            problems.append((port.name, f"{named} must have {kind}"))
+    problems += [(name, text) for name, text in (more_problems or {}).items() if key(name) in there]
     if problems:
-        span = description.accelerator_span
-        raise DefinitionError([Diagnostic(message=each, span=span) for each in problems])
+        places = places_of(description, sources, [name for name, _ in problems])
+        else_at = places.get("", description.accelerator_span)
+        raise DefinitionError(
+            [Diagnostic(message=text, span=places.get(name, else_at)) for name, text in problems]
+        )
     return tuple(port for name, port in needed.items() if name in there)
 
 
@@ -174,7 +229,8 @@ def _bits(width: int) -> str:
     return "1 bit" if width == 1 else f"{width} bits"
 
 
-def _listed(names: Collection[str]) -> str:
-    shown = ", ".join(f"'{name}'" for name in list(names)[:_MOST_NAMED])
+def listed(names: Collection[str], quote: str = "'") -> str:
+    """Name the first few of many."""
+    shown = ", ".join(f"{quote}{name}{quote}" for name in list(names)[:_MOST_NAMED])
     more = len(names) - _MOST_NAMED
     return f"{shown} and {more} more" if more > 0 else shown

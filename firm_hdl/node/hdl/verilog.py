@@ -10,13 +10,24 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 from firm_hdl.jobs import ToolError, run_tool
 from firm_hdl.jobs.programs import find_verilator
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
-from firm_hdl.node.hdl.sources import check_ports, path_of, problems_of, refused, refused_twice
+from firm_hdl.node.hdl.records import Generated
+from firm_hdl.node.hdl.sources import (
+    check_ports,
+    path_of,
+    places_of,
+    problems_of,
+    refused,
+    refused_twice,
+    span_of,
+)
 
 __all__ = ["checked_verilog", "preprocessed"]
 
@@ -32,6 +43,12 @@ _MISSING = re.compile(r"PINMISSING:.*(?:missing pin|unconnected pin|Missing pin)
 _WIDTH = re.compile(r"(Input|Output) port connection '([^']+)' expects (\d+) bits")
 _ASSIGNED = re.compile(r"Assign.*to input.*'([^']+)'")
 _UNDRIVEN = re.compile(r"UNDRIVEN:.*Signal is not driven: '([^']+)'")
+_PLACED = re.compile(r"%Error\S*: \S.*?:\d+:")
+_OWN = re.compile(
+    r"^%Warning-(?:(UNDRIVEN): (.+?):(\d+):(\d+): .* not driven: '([^']+)'(\[[\d:]+\])?"
+    r"|(?:LITENDIAN|ASCRANGE): (.+?):(\d+):(\d+): )",
+    re.MULTILINE,
+)
 _NO_MODULE = re.compile(r"(?:containing module|module reference): '([^']+)'")
 
 
@@ -39,45 +56,79 @@ def checked_verilog(
     description: Description,
     sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
+    packages: Mapping[str, str],
 ) -> tuple[AcceleratorPort, ...]:
     """Check files of Verilog or SystemVerilog, and the ports of the module, as `checked_vhdl`."""
-    said, is_right = _lint(description, sources, wanted)
-    if is_right and not (_MISSING.search(said) or _WIDTH.search(said) or _UNDRIVEN.search(said)):
-        return tuple(wanted)
-    absent = {name for names in _NOT_FOUND.findall(said) for name in names if name}
-    optional = {port.name for port in wanted if port.is_optional}
-    if absent & optional:
-        return checked_verilog(
-            description, sources, [port for port in wanted if port.name not in absent & optional]
-        )
+    # Verilator compares nothing else while a port is not there.
+    ports = list(wanted)
+    said, own, is_right = _lint(description, sources, ports, packages)
+    errors = [line for line in said.splitlines() if "%Error" in line and _WRAPPER not in line]
+    if any(_PLACED.match(line) and not _ASSIGNED.search(line) for line in errors):
+        # Mistakes inside can be why ports are not there.
+        raise problems_of(description, said, sources, "Verilator")
+    while absent := {name for names in _NOT_FOUND.findall(said) for name in names if name}:
+        left = [port for port in ports if port.name not in absent]
+        if left == ports:
+            break
+        ports = left
+        said, own, is_right = _lint(description, sources, ports, packages)
     # What Verilator has not said is as wanted.
-    found = {port.name: port for port in wanted if port.name not in absent}
+    found = {port.name: port for port in ports}
     for name in _MISSING.findall(said):
         found[name] = AcceleratorPort(name=name, direction="in", width=1)
     for _, name, width in _WIDTH.findall(said):
         if name in found:
-            found[name] = _with(found[name], width=int(width))
+            found[name] = replace(found[name], width=int(width))
     for name in [*_ASSIGNED.findall(said), *_UNDRIVEN.findall(said)]:
         if name in found:
-            other = "out" if found[name].direction == "in" else "in"
-            found[name] = _with(found[name], direction=other)
-    check_ports(description, list(found.values()), wanted, ignores_case=False)
+            other: Literal["in", "out"] = "out" if found[name].direction == "in" else "in"
+            found[name] = replace(found[name], direction=other)
+    problems = _own_problems(description, sources, found, own)
+    check_ports(description, sources, list(found.values()), wanted, problems)
     if is_right:
-        return tuple(wanted)
+        return tuple(ports)
     raise problems_of(description, said, sources, "Verilator")
 
 
-def _with(
-    port: AcceleratorPort, *, width: int | None = None, direction: str = ""
-) -> AcceleratorPort:
-    return AcceleratorPort(
-        name=port.name,
-        direction=direction or port.direction,  # type: ignore[arg-type]
-        width=port.width if width is None else width,
-    )
+def _own_problems(
+    description: Description,
+    sources: Mapping[str, bytes],
+    ports: Mapping[str, AcceleratorPort],
+    said: str,
+) -> dict[str, str]:
+    """Return what Verilator warns of at the ports of the module, by their names."""
+    assert description.hdl is not None
+    entity = description.hdl.entity
+    by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
+    places = places_of(description, sources, ports)
+    problems: dict[str, str] = {}
+    for match in _OWN.finditer(said):
+        path, row, column = match.group(*((2, 3, 4) if match[1] else (7, 8, 9)))
+        if (file := by_path.get(os.path.abspath(path))) is None:
+            continue
+        at = span_of(description, file, sources[file], int(row), int(column))
+        if match[1]:
+            name, bits = match[5], match[6]
+            is_here = name in ports and places.get(name) == at and ports[name].direction == "out"
+            some = f"bits {bits.strip('[]')} of " if bits else ""
+            text = f"nothing drives {some}the output '{name}' of '{entity}'"
+        else:
+            # The range comes before the names that have it.
+            names = re.match(r"\[[^\]]*\]\s*(\w+)", at.source.text[at.start :])
+            name = names[1] if names else ""
+            is_here = name in places and places[name].source == at.source
+            text = (
+                f"port '{name}' of '{entity}' has an ascending range, so its bit 0 would be the "
+                f"highest one: write '[{ports[name].width - 1}:0]'"
+                if is_here
+                else ""
+            )
+        if is_here:
+            problems.setdefault(name, text)
+    return problems
 
 
-def preprocessed(description: Description) -> tuple[str, dict[str, bytes]]:
+def preprocessed(description: Description, generated: Generated) -> tuple[str, dict[str, bytes]]:
     """Return all files as one text, and the files that they include, by absolute path.
 
     Raises
@@ -85,15 +136,24 @@ def preprocessed(description: Description) -> tuple[str, dict[str, bytes]]:
     DefinitionError
     """
     paths = _paths(description)
-    with tempfile.TemporaryDirectory(prefix="firm_hdl-") as folder:
+    with tempfile.TemporaryDirectory(prefix="firm_hdl-") as name:
+        folder = Path(name)
+        before, after = _written(generated.packages, folder), _written(generated.wrapper, folder)
         try:
-            command = [*_command(description), "-E", *paths]
-            text = run_tool(command, Path(folder), with_errors=False)
+            command = [*_command(description), "-E", *before, *paths, *after]
+            text = run_tool(command, folder, with_errors=False)
         except ToolError as error:
             raise problems_of(description, str(error), {}, "Verilator") from None
     places = re.findall(r'^`line \d+ "([^"<]+)"', text, re.MULTILINE)
     more = {os.path.normpath(path): path for path in places if os.path.isfile(path)}
-    return text, {name: Path(path).read_bytes() for name, path in more.items() if name not in paths}
+    known = {*paths, *before, *after}
+    return text, {name: Path(path).read_bytes() for name, path in more.items() if name not in known}
+
+
+def _written(files: Mapping[str, str], folder: Path) -> list[str]:
+    for file, text in files.items():
+        (folder / file).write_text(text, encoding="utf-8")
+    return [str(folder / file) for file in files]
 
 
 def _paths(description: Description) -> list[str]:
@@ -110,22 +170,34 @@ def _command(description: Description) -> list[str]:
 
 
 def _lint(
-    description: Description, sources: Mapping[str, bytes], ports: Sequence[AcceleratorPort]
-) -> tuple[str, bool]:
-    """Let Verilator check the files with a module around them; return what it says."""
+    description: Description,
+    sources: Mapping[str, bytes],
+    ports: Sequence[AcceleratorPort],
+    packages: Mapping[str, str],
+) -> tuple[str, str, bool]:
+    """Let Verilator check the files with a module around them.
+
+    Returns
+    -------
+    str, str, bool
+        What Verilator says on errors, and on the module around them; all that it says; and whether
+        there is no error.
+    """
     assert description.hdl is not None
     entity = description.hdl.entity
     heads = [f"  {p.direction}put wire [{p.width - 1}:0] {p.name}" for p in ports]
     pins = [f"    .{port.name}({port.name})" for port in ports]
     text = [f"module {_WRAPPER} (", ",\n".join(heads), ");", f"  {entity} it ("]
     text += [",\n".join(pins), "  );", "endmodule", ""]
-    with tempfile.TemporaryDirectory(prefix="firm_hdl-") as folder:
-        file = Path(folder, f"{_WRAPPER}.v")
+    with tempfile.TemporaryDirectory(prefix="firm_hdl-") as name:
+        folder = Path(name)
+        file = folder / f"{_WRAPPER}.v"
         file.write_text("\n".join(text), encoding="ascii")
         command = [*_command(description), "--lint-only", "-Wall", "-Wno-fatal", "--no-timing"]
-        command += ["-Wno-DECLFILENAME", "--top-module", _WRAPPER, *_paths(description), str(file)]
+        command += ["-Wno-DECLFILENAME", "--top-module", _WRAPPER]
+        command += [*_written(packages, folder), *_paths(description), str(file)]
         try:
-            said, is_right = run_tool(command, Path(folder)), True
+            said, is_right = run_tool(command, folder), True
         except ToolError as error:
             said, is_right = str(error), False
         for twice in _TWICE.finditer(said):
@@ -134,13 +206,13 @@ def _lint(
                 continue
             # Verilator would take the first one; other tools refuse both.
             raise refused_twice(description, f"'{twice[2]}'", twice[3], twice[1])
-        # Warnings of the user's own files are not ours; errors are.
+        # Most warnings of the user's own files are not ours; errors are.
         lines = [
             line
             for line in said.splitlines()
-            if "%Error" in line or str(file) in line or not line.startswith("%")
+            if line.startswith("%") and ("%Error" in line or str(file) in line)
         ]
-    if not is_right and entity in _NO_MODULE.findall(said):
+    if not is_right and entity in _NO_MODULE.findall("\n".join(lines)):
         names = ", ".join(map(repr, sources))
         raise refused(description, f"there is no module '{entity}' in {names}")
-    return "\n".join(line for line in lines if line.startswith("%")), is_right
+    return "\n".join(lines), said, is_right

@@ -10,19 +10,26 @@ import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import accumulate
 from pathlib import Path
+from typing import Literal
+from xml.etree import ElementTree
 
 from firm_hdl.equivalence.circuit import ProofError
-from firm_hdl.equivalence.dump import parse_dump
+from firm_hdl.equivalence.dump import Module, Net, parse_dump
 from firm_hdl.equivalence.vhdl_side import read_vhdl
 from firm_hdl.jobs import ToolError, run_tool
 from firm_hdl.jobs.programs import find_ghdl
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.netlist import verilog_of
 from firm_hdl.node.hdl.ports import AcceleratorPort
+from firm_hdl.node.hdl.records import NO_FILES, Generated
 from firm_hdl.node.hdl.sources import (
     check_ports,
+    listed,
     path_of,
+    places_of,
     problems_of,
     refused,
     refused_twice,
@@ -39,8 +46,14 @@ def checked_vhdl(
     description: Description,
     sources: Mapping[str, bytes],
     wanted: Sequence[AcceleratorPort],
+    packages: Mapping[str, str],
 ) -> tuple[AcceleratorPort, ...]:
     """Analyse files of VHDL-2008, and check the ports of the entity.
+
+    Parameters
+    ----------
+    packages : mapping of str to str
+        Texts of the packages with the types of records, by file name.
 
     Returns
     -------
@@ -54,55 +67,144 @@ def checked_vhdl(
     ProgramMissingError
     """
     entity = _entity(description)
-    with tempfile.TemporaryDirectory(prefix="firm_hdl-") as folder:
-        dump = _dump(description, sources, Path(folder))
+    files = Generated(entity=entity, packages=packages, wrapper={})
+    with tempfile.TemporaryDirectory(prefix="firm_hdl-") as name:
+        folder = Path(name)
+        dump = _dump(description, sources, folder, files)
         try:
             modules = parse_dump(dump)
         except ProofError as error:
             raise refused(description, _reason(error)) from None
         # GHDL writes the outermost entity under its own name; those with generics under others.
-        own = next((m.own for name, m in modules.items() if name.lower() == entity.lower()), None)
-        if own is None:
+        top = next((m for name, m in modules.items() if name.lower() == entity.lower()), None)
+        if top is None or top.own is None:
             raise refused(description, f"GHDL's netlist has no entity '{entity}'")
-        top = next(module for module in modules.values() if module.own is own)
         both = {net for i in top.instances if i.kind == "$inout" for net in i.outputs.values()}
-        for name, net in own.inputs.items():
-            if net in both:
-                raise refused(
-                    description,
-                    f"port '{name}' of '{entity}' must be an input or an output, not an inout",
-                )
-        found = [
-            AcceleratorPort(name=name, direction="in", width=net.width)
-            for name, net in own.outputs.items()
-        ]
-        found += [
-            AcceleratorPort(name=name, direction="out", width=net.width)
-            for name, net in own.inputs.items()
-        ]
-        ports = check_ports(description, found, wanted, ignores_case=True)
-        _check_types(description, Path(folder), ports)
+        problems: dict[str, str] = {}
+        # The fields of a record are ports of their own, such as twist.linear, in order.
+        found: dict[str, AcceleratorPort] = {}
+        undriven: dict[str, list[bool]] = {}
+        for nets in (top.own.outputs, top.own.inputs):
+            for path, net in nets.items():
+                name = path.partition(".")[0]
+                before = found[name].width if name in found else 0
+                way: Literal["in", "out"] = "in" if nets is top.own.outputs else "out"
+                found[name] = AcceleratorPort(name=name, direction=way, width=before + net.width)
+                if way == "out" and net in both:
+                    problems[name] = (
+                        f"port '{name}' of '{entity}' must be an input or an output, not an inout"
+                    )
+                elif way == "out":
+                    undriven.setdefault(name, []).extend(_undriven(top, net))
+        parts = {port.name.lower(): port.parts for port in wanted}
+        for name, bits in undriven.items():
+            if any(bits):
+                text = f"nothing drives {_named(name, bits, parts.get(name, {}))} of '{entity}'"
+                problems.setdefault(name, text)
+        for port in _ascending(description, sources, folder):
+            problems.setdefault(
+                port,
+                f"port '{port}' of '{entity}' has an ascending range, so its bit 0 would be the "
+                "highest one: write 'downto'",
+            )
+        ports = check_ports(description, sources, list(found.values()), wanted, problems)
+        _check_types(description, sources, folder, ports)
     return ports
 
 
+def _named(port: str, bits: Sequence[bool], parts: Mapping[str, int]) -> str:
+    """Name the fields of an output, or its bits, that nothing drives."""
+    if all(bits):
+        return f"the output '{port}'"
+    if sum(parts.values()) != len(bits):
+        found = [str(place) for place, bit in enumerate(bits) if bit]
+        return f"bit {listed(found, '')} of the output '{port}'"
+    ends = accumulate(parts.values())
+    fields = [
+        f"{port}.{part}"
+        for (part, width), end in zip(parts.items(), ends, strict=True)
+        if any(bits[end - width : end])
+    ]
+    return listed(fields)
+
+
+def _undriven(module: Module, net: Net) -> list[bool]:
+    """Return whether nothing drives each bit of a net, as far as its gates only join bits."""
+    driver = next((i for i in module.instances if net in i.outputs.values()), None)
+    if driver is not None and driver.kind == "$const_Z":
+        return [True] * net.width
+    if driver is not None and driver.kind.startswith("$concat"):
+        # The first input has the highest bits.
+        return [
+            bit
+            for part in reversed(list(driver.inputs.values()))
+            for bit in _undriven(module, part)
+        ]
+    if driver is not None and driver.kind == "$extract":
+        (whole,) = driver.inputs.values()
+        return _undriven(module, whole)[driver.parameters[0] :][: net.width]
+    if driver is not None and driver.kind in ("$signal", "$output", "$nop"):
+        return _undriven(module, next(iter(driver.inputs.values())))
+    return [False] * net.width
+
+
+def _ascending(description: Description, sources: Mapping[str, bytes], folder: Path) -> list[str]:
+    """Return the ports of the entity that are vectors with ascending ranges.
+
+    GHDL's netlist has no directions, but its syntax tree has, also those of subtypes.
+    """
+    place = places_of(description, sources, ()).get("")
+    if place is None:
+        return []
+    command = [find_ghdl(), "--file-to-xml", "--std=08", f"--workdir={folder}"]
+    try:
+        tree = run_tool(
+            [*command, os.path.abspath(place.source.name)],
+            folder,
+            environment={"LC_ALL": "C"},
+            with_errors=False,
+        )
+        root = ElementTree.fromstring(tree)
+    except (ToolError, ElementTree.ParseError):
+        # Other versions of GHDL may have no such tree.
+        return []
+    entity = _entity(description).lower()
+    nodes = {node.get("id"): node for node in root.iter() if node.get("id")}
+    found = []
+    for unit in root.iter("library_unit"):
+        if unit.get("identifier") != entity or unit.get("kind") != "entity_declaration":
+            continue
+        for port in unit.iterfind("port_chain/el"):
+            kind = port.find("type")
+            of = None if kind is None else nodes.get(kind.get("ref"))
+            range_ = None if of is None else of.find("index_constraint_list/el/range_constraint")
+            if range_ is not None and range_.get("direction") == "to":
+                found.append(port.get("identifier", ""))
+    return found
+
+
 def verilog_of_vhdl(
-    description: Description, sources: Mapping[str, bytes], ports: Sequence[AcceleratorPort]
+    description: Description,
+    sources: Mapping[str, bytes],
+    ports: Sequence[AcceleratorPort],
+    generated: Generated = NO_FILES,
 ) -> str:
-    """Return the entity as a module of Verilog, for a simulator with two values.
+    """Return the entity, or the wrapper around it, as a module of Verilog with two values.
 
     Raises
     ------
     DefinitionError
         If the netlist has something that cannot be translated.
     """
+    entity = generated.entity or _entity(description)
     with tempfile.TemporaryDirectory(prefix="firm_hdl-") as folder:
-        dump = _dump(description, sources, Path(folder))
+        dump = _dump(description, sources, Path(folder), replace(generated, entity=entity))
     try:
         circuit = read_vhdl(dump)
     except ProofError as error:
         raise refused(description, _reason(error)) from None
     names = {port.name.lower(): port.name for port in ports}
-    return verilog_of(circuit, name=_entity(description), names=names)
+    return verilog_of(circuit, name=entity, names=names)
 
 
 def _reason(error: ProofError) -> str:
@@ -117,11 +219,16 @@ def _entity(description: Description) -> str:
     return description.hdl.entity
 
 
-def _dump(description: Description, sources: Mapping[str, bytes], folder: Path) -> str:
-    """Analyse the files, and return GHDL's netlist of the entity."""
+def _dump(
+    description: Description, sources: Mapping[str, bytes], folder: Path, files: Generated
+) -> str:
+    """Analyse the files, and return GHDL's netlist of an entity."""
     ghdl = find_ghdl()
     options = ["--std=08", f"--workdir={folder}"]
-    paths = [os.path.abspath(path_of(description, file)) for file in sources]
+    for file, text in {**files.packages, **files.wrapper}.items():
+        (folder / file).write_text(text, encoding="utf-8")
+    own = [os.path.abspath(path_of(description, file)) for file in sources]
+    paths = [*files.packages, *own, *files.wrapper]
     environment = {"LC_ALL": "C"}
     try:
         said = run_tool(
@@ -133,7 +240,7 @@ def _dump(description: Description, sources: Mapping[str, bytes], folder: Path) 
         # GHDL would take the last one.
         unit = twice[2].replace('"', "'")
         raise refused_twice(description, unit, twice[3], twice[1])
-    command = [ghdl, "--synth", *options, "-dm", "--out=dump", _entity(description)]
+    command = [ghdl, "--synth", *options, "-dm", "--out=dump", files.entity]
     try:
         return run_tool(command, folder, environment=environment, with_errors=False)
     except ToolError as error:
@@ -149,7 +256,12 @@ def _dump(description: Description, sources: Mapping[str, bytes], folder: Path) 
         raise problems_of(description, said, sources, "GHDL") from None
 
 
-def _check_types(description: Description, folder: Path, ports: Sequence[AcceleratorPort]) -> None:
+def _check_types(
+    description: Description,
+    sources: Mapping[str, bytes],
+    folder: Path,
+    ports: Sequence[AcceleratorPort],
+) -> None:
     """Check that ports have the types that a component of the node's VHDL has."""
     entity = _entity(description)
     signals = [(f"s{n}", port) for n, port in enumerate(ports)]
@@ -167,15 +279,19 @@ def _check_types(description: Description, folder: Path, ports: Sequence[Acceler
     try:
         run_tool(command, folder, environment={"LC_ALL": "C"})
     except ToolError as error:
+        problems = {}
         for line in str(error).splitlines():
             place = line.removeprefix(f"{file}:").split(":")
             row = int(place[0]) - first if place[0].isdigit() and line.startswith(str(file)) else -1
             if 0 <= row < len(ports):
                 port = ports[row]
-                message = f"port '{port.name}' of '{entity}' must have the type {_type(port)}"
-                raise refused(description, message) from None
+                problems[port.name] = (
+                    f"port '{port.name}' of '{entity}' must have the type {_type(port)}"
+                )
+        check_ports(description, sources, ports, ports, problems)
         raise refused(description, f"GHDL failed: {str(error)[:400]}") from None
 
 
 def _type(port: AcceleratorPort) -> str:
-    return "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
+    plain = "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
+    return port.type or plain

@@ -37,6 +37,8 @@ def link_of(description: Description) -> Any:
             return UartLink(bus, link, description.clock_hz)
         case "rtps":
             return RtpsLink(description)
+        case _:
+            raise ValueError(f"no component for a link of kind '{link.kind}'")
 
 
 def medium_of(description: Description) -> dict[str, Any]:
@@ -53,3 +55,5 @@ def medium_of(description: Description) -> dict[str, Any]:
             return UartLink.medium()
         case "rtps":
             return RtpsLink.medium()
+        case _:
+            raise ValueError(f"no component for a link of kind '{link.kind}'")

@@ -5,10 +5,13 @@ from __future__ import annotations
 from ipaddress import IPv4Address, IPv4Interface
 from typing import Any
 
-from amaranth.hdl import Module
+from amaranth.hdl import ClockDomain, DomainRenamer, Module, ResetSignal, Signal, Value
 from amaranth.lib import wiring
+from amaranth.lib.cdc import PulseSynchronizer, ResetSynchronizer
+from amaranth.lib.fifo import AsyncFIFOBuffered
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.ethernet.datagrams import datagram_layout
 from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
 from firm_hdl.ethernet.phy import PHYS, GmiiSignature, MiiSignature, RgmiiSignature
 from firm_hdl.gateware.packets.counters import add_counters
@@ -25,14 +28,26 @@ __all__ = ["EthernetLink"]
 _ONE_FRAME_BYTES = 2048
 """Memory of a topic whose messages are meant to fit into a frame."""
 
+_GIGABIT_HZ = 125e6
+
+_APART = "ethernet"
+"""The clock domain of an edge whose clock is not that of the node."""
+
+_WORDS = 17
+"""Words between two clock domains: 16, which are enough for a word per cycle, and one behind."""
+
 _PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
 
 class EthernetLink(wiring.Component):
     """A :class:`.UdpLink` or a :class:`.RtpsLink` on top of an edge to Ethernet.
 
-    Two clock domains or three: `sync`, and those of the PHY, whose clocks are pins. The reset of
-    `sync` is enough.
+    The edge takes a byte per cycle, at 1 Gbit/s with 125 MHz. A node with another clock has its
+    edge in the domain of what the PHY receives; datagrams cross between the two. What comes faster
+    than the node reads waits in the edge, as far as there is room.
+
+    The other clock domains are those of the PHY, whose clocks are pins. The reset of `sync` is
+    enough.
 
     Parameters
     ----------
@@ -82,8 +97,9 @@ class EthernetLink(wiring.Component):
             m.d.comb += [upper.nonce.eq(self.nonce), upper.idle.eq(self.idle)]
         else:
             m.submodules.udp = upper = UdpLink(self.description.bus_bytes, link)
-        m.submodules.phy = phy = PHYS[link.ethernet]()
-        m.submodules.network = network = EthernetEdge(
+        is_apart = link.ethernet != "mii" and self.description.clock_hz != _GIGABIT_HZ
+        phy = PHYS[link.ethernet]()
+        network = EthernetEdge(
             EthernetSettings(
                 mac=int(link.mac.replace(":", ""), 16),
                 address=int(own.ip),
@@ -91,22 +107,60 @@ class EthernetLink(wiring.Component):
                 gateway=int(IPv4Address(link.gateway)) if link.gateway else 0,
                 ports=ports,
                 groups=groups,
+                memory_bytes=1 << 14 if is_apart else 1 << 12,
                 fragment_bytes=_fragment_bytes(self.description),
             )
         )
         wiring.connect(m, phy.pins, wiring.flipped(getattr(self, link.ethernet)))
         wiring.connect(m, phy.received, network.symbols_in)
         wiring.connect(m, network.symbols_out, phy.sent)
-        wiring.connect(m, network.received, upper.datagrams_in)
-        wiring.connect(m, upper.datagrams_out, network.sent)
+        drops: Any = network.drops
+        if is_apart:
+            drops = self._cross(m, phy, network, upper)
+        else:
+            m.submodules.phy, m.submodules.network = phy, network
+            wiring.connect(m, network.received, upper.datagrams_in)
+            wiring.connect(m, upper.datagrams_out, network.sent)
         m.d.comb += [*passes(upper.received, self.received), *passes(self.sent, upper.sent)]
         for name in upper.counters.shape().members:
             m.d.comb += self.counters[name].eq(upper.counters[name])
         names = network.drops.shape().members
-        add_counters(
-            m, self.counters, {ethernet_counter(name): network.drops[name] for name in names}
-        )
+        add_counters(m, self.counters, {ethernet_counter(name): drops[name] for name in names})
         return m
+
+    def _cross(self, m: Module, phy: Any, network: EthernetEdge, upper: Any) -> dict[str, Signal]:
+        """Put PHY and edge into a domain of their own; return the edge's strobes in `sync`."""
+        domain = ClockDomain(_APART, local=True)
+        domain.clk = getattr(
+            phy.pins, "rxc" if self.description.link.ethernet == "rgmii" else "rx_clk"
+        )
+        m.domains += domain
+        m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
+        m.submodules.phy = DomainRenamer(_APART)(phy)
+        m.submodules.network = DomainRenamer(_APART)(network)
+        width = datagram_layout(1).size
+        for name, source, target, domains in (
+            ("to_node", network.received, upper.datagrams_in, (_APART, "sync")),
+            ("to_edge", upper.datagrams_out, network.sent, ("sync", _APART)),
+        ):
+            m.submodules[name] = fifo = AsyncFIFOBuffered(
+                width=width, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
+            )
+            m.d.comb += [
+                fifo.w_data.eq(source.payload),
+                fifo.w_en.eq(source.valid),
+                source.ready.eq(fifo.w_rdy),
+                Value.cast(target.payload).eq(fifo.r_data),
+                target.valid.eq(fifo.r_rdy),
+                fifo.r_en.eq(target.ready),
+            ]
+        drops = {}
+        for name in network.drops.shape().members:
+            # At most one per frame, so a strobe has passed before the next one.
+            m.submodules[f"drop_{name}"] = strobe = PulseSynchronizer(_APART, "sync")
+            m.d.comb += strobe.i.eq(network.drops[name])
+            drops[name] = strobe.o
+        return drops
 
 
 def _fragment_bytes(description: Description) -> int:

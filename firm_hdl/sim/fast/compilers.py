@@ -59,6 +59,13 @@ SERVER = Path(__file__).parent / "server.h"
 MOST_WAVE_BYTES = 1 << 30
 """Where a waveform ends: a live simulation has no end."""
 
+_TRACES = {"": (), "vcd": ("--trace",), "fst": ("--trace-fst",)}
+
+_FST = (
+    "A waveform as FST needs zlib and lz4 (Debian, Ubuntu: apt install zlib1g-dev liblz4-dev); one "
+    "as VCD does not"
+)
+
 _MODULE, _PREFIX = "firm_hdl_design", "Vdesign"
 _OPTIONS = (
     *("--cc", "-Wno-lint", "-Wno-style", "-Wno-fatal", "--no-timing"),
@@ -168,7 +175,10 @@ class _Build:
                 stop.set()
                 pool.shutdown(cancel_futures=True)
                 raise
-        linked = [*self.command, *sorted(map(str, objects)), "-pthread"]
+        # FST is compressed; newer versions of Verilator do not bring their own lz4.
+        more = ["-lz"] if self.source.traced == "fst" else []
+        more += ["-llz4"] if more and (headers / "fstcpp").exists() else []
+        linked = [*self.command, *sorted(map(str, objects)), "-pthread", *more]
         return self._run(linked, folder / "program", folder)
 
     def _object(
@@ -199,6 +209,8 @@ class _Build:
             return made_by(command[0], output)
         except ToolError as error:
             said = _shortened(str(error))
+            if self.source.traced == "fst":
+                said += f"\n{_FST}"
             raise BuildError(f"The compiler failed: {shlex.join(whole)}\n{said}") from None
 
 
@@ -239,19 +251,19 @@ class VerilatedSource:
         C++ with the table of the ports.
     modules : mapping of str to str
         More Verilog by file name: modules that the design has instances of.
-    traced : bool
-        The program writes a waveform.
+    traced : "", "vcd" or "fst"
+        The format of the waveform that the program writes.
     """
 
     verilog: str
     main: str
     modules: Mapping[str, str] = field(default_factory=dict)
-    traced: bool = False
+    traced: str = ""
 
 
 @search_put_off()
 def verilated_source(
-    top: Top, modules: Mapping[str, str] | None = None, *, traced: bool = False
+    top: Top, modules: Mapping[str, str] | None = None, *, traced: str = ""
 ) -> VerilatedSource:
     """Elaborate a design.
 
@@ -291,7 +303,7 @@ def translate(
     (folder / SERVER.name).write_bytes(SERVER.read_bytes())
     for name, text in source.modules.items():
         (folder / name).write_text(text, encoding="utf-8")
-    options = [*_OPTIONS, *(["--trace"] if source.traced else [])]
+    options = [*_OPTIONS, *_TRACES[source.traced]]
     run_tool([*verilator, *options, "design.v", *source.modules], folder)
     makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
     # Which parts of the runtime a model needs depends on the version.

@@ -139,6 +139,7 @@ def start(
         if wave:
             raise BuildError(f"Amaranth's simulator writes no waveform while it is live{reason}")
         return AmaranthEngine(top)
-    source = partial(verilated_source, top, modules, traced=wave is not None)
+    traced = "" if wave is None else "fst" if wave.suffix == ".fst" else "vcd"
+    source = partial(verilated_source, top, modules, traced=traced)
     program = program_of(source, options=options, cache=cache, report=report)
     return VerilatorEngine(program, wave)

@@ -15,7 +15,7 @@ from firm_hdl.errors import UserError
 from firm_hdl.files import write_new
 from firm_hdl.frontend import open_library
 from firm_hdl.node import Description, Topic, read_description, read_description_text
-from firm_hdl.node.reading import NODE_BUS_BYTES
+from firm_hdl.node.description import NODE_BUS_BYTES
 from firm_hdl.verify.systems.options import Request
 
 __all__ = ["chosen_loops", "described_board", "loop_text", "write_description"]

@@ -6,8 +6,10 @@ answer fails all that are left at once, with the same text.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any, cast
 
 from firm_hdl.errors import DefinitionError, UserError
@@ -18,24 +20,11 @@ from firm_hdl.verify.board.description import chosen_loops
 from firm_hdl.verify.board.judge import judge_loop
 from firm_hdl.verify.board.talk import Talk, TalkError
 from firm_hdl.verify.references.clients import find_references
+from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
-from firm_hdl.verify.results.verdict import (
-    Failed,
-    KnownDifference,
-    NotJudged,
-    Passed,
-)
+from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import (
-    Judged,
-    Made,
-    Recorder,
-    System,
-    Trial,
-    failure_of,
-    judged,
-    kept,
-)
+from firm_hdl.verify.systems.system import Made, System, Trial, counted, failure_of, kept
 from firm_hdl.verify.ts3.task import command_of, words_of
 
 __all__ = ["Boards"]
@@ -84,8 +73,14 @@ class Boards(System):
 
     @property
     def tests(self) -> Sequence[Test]:
-        """A test for each type that the node loops."""
-        return [self._test(loop) for loop in self._loops]
+        """A test for each type that the node loops, or for each loop if a type has several."""
+        return list(self._loop_of)
+
+    @cached_property
+    def _loop_of(self) -> dict[Test, tuple[Topic, Topic]]:
+        """The loops by their tests."""
+        counts = Counter(loop[0].type for loop in self._loops)
+        return {self._test(loop, counts[loop[0].type] > 1): loop for loop in self._loops}
 
     @property
     def options(self) -> Mapping[str, Any]:
@@ -102,21 +97,20 @@ class Boards(System):
             "references": None if request.references is None else list(request.references),
         }
 
-    def run(self, recorder: Recorder) -> list[Judged]:
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Open the board, and send the types that have no record."""
-        tests = {loop: self._test(loop) for loop in self._loops}
-        records = kept(tests, recorder, self._records, label="board")
+        records = kept(self.tests, writer, self._records, self._lines, label="board")
         for verdict in (Passed, KnownDifference, Failed, NotJudged):
-            found = [each for each in records.values() if isinstance(each.verdict, verdict)]
+            found = [each for each in records if isinstance(each.verdict, verdict)]
             if found:
                 packets = sum(each.packets for each in found)
                 print(
                     f"board {self._board.name}: {len(found)} of {len(records)} types "
                     f"{verdict.name}, {packets} packets sent"
                 )
-        return judged(records.values())
+        return counted(records)
 
-    def _records(self, left: list[tuple[Topic, Topic]]) -> Made[tuple[Topic, Topic]]:
+    def _records(self, left: Sequence[Test]) -> Made:
         if not left:
             return
         if self._request.board == "sim":
@@ -126,8 +120,8 @@ class Boards(System):
             )
         with Talk(self._board, self._description, self._request.silent_seconds) as talk:
             is_open, gone = False, ""
-            for loop in left:
-                trial = Trial.of(self._test(loop))
+            for test in left:
+                trial = Trial.of(test)
                 try:
                     if gone:
                         raise TalkError(gone)
@@ -137,9 +131,8 @@ class Boards(System):
                     gone = str(error)
                     trial.failures.append(gone)
                 else:
-                    is_open = self._judge(talk, loop, trial)
-                record = replace(trial.end(), command=self._command())
-                yield [(loop, record, self._lines(record))]
+                    is_open = self._judge(talk, self._loop_of[test], trial)
+                yield [replace(trial.end(), command=self._command())]
 
     def _judge(self, talk: Talk, loop: tuple[Topic, Topic], trial: Trial) -> bool:
         """Judge a type; return whether the talk can go on."""
@@ -155,11 +148,12 @@ class Boards(System):
             trial.stop(error)
         return True
 
-    def _test(self, loop: tuple[Topic, Topic]) -> Test:
+    def _test(self, loop: tuple[Topic, Topic], is_one_of_several: bool) -> Test:
         request, description = self._request, self._description
         # A board is not stalled, whatever was asked for.
         options = replace(request, stalled=True)
         node = [] if request.node is None else [f"node={request.node}"]
+        node += [f"topic={loop[0].name}"] if is_one_of_several else []
         return Test(
             system=self.name,
             distro=description.distro,

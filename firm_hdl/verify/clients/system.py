@@ -13,7 +13,7 @@ from firm_hdl.cases.values import Plain, from_objects
 from firm_hdl.errors import DefinitionError
 from firm_hdl.model import Message
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.clients.judge import LibraryComparison, LibraryResult
+from firm_hdl.verify.clients.judge import compare
 from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.references.clients import (
     CLIENTS,
@@ -22,16 +22,15 @@ from firm_hdl.verify.references.clients import (
     close_clients,
     find_clients,
 )
+from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.system import (
-    Judged,
-    Recorder,
     Trial,
     TypesSystem,
+    counted,
     failure_of,
-    judged,
     kept,
     print_passes,
     recorded,
@@ -127,29 +126,29 @@ class Libraries(TypesSystem):
         """The libraries and references with their versions."""
         return {"libraries": [f"{name} {version}" for name, version in self._versions.items()]}
 
-    def run(self, recorder: Recorder) -> list[Judged]:
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Judge the libraries on all types, and print a summary of each."""
         request = self._request
         records = kept(
-            {test: test for test in self.tests},
-            recorder,
+            self.tests,
+            writer,
             lambda left: run_tests(
                 judge_library,
                 (request, self._installed),
                 left,
                 self._again,
-                lambda record: failure_of(record.test.title, record),
                 most=len(request.libraries),
                 jobs=request.jobs,
             ),
+            lambda record: failure_of(record.test.title, record),
             label="client libraries",
-        ).values()
+        )
         for name in request.libraries:
             own = [each for each in records if each.test.system == f"sut {name}"]
             compared = round(sum(each.metrics.get("comparisons", 0) for each in own))
             print(f"{name} {self._versions[name]}: {compared} comparisons")
             print_passes(own, "types agree")
-        return judged(records)
+        return counted(records)
 
     def _again(self, test: Test) -> str:
         request = self._request
@@ -178,32 +177,15 @@ def judge_library(given: tuple[Request, Sequence[str]], test: Test) -> Record:
         except (DefinitionError, ValueError) as error:
             raise NotJudgedError(str(error)) from None
         trial.watch.enter("testing")
-        result = None
+        first = None
         for reference in _references(library, wire, installed):
-            both = LibraryComparison(client(library), client(reference), wire)
-            other = both.judge(message, values)
-            result = result or other
-            if not isinstance(other.obstacle, NotJudged):
-                result = other
-                break
-        if result is None:
-            trial.obstacle = NotJudged(f"no reference for {wire} is installed")
-        else:
-            _take(result, trial)
+            trial.obstacle = None
+            if compare(client(library), client(reference), message, wire, values, trial):
+                return
+            first = first or trial.obstacle
+        trial.obstacle = first or NotJudged(f"no reference for {wire} is installed")
 
     return recorded(test, run)
-
-
-def _take(result: LibraryResult, trial: Trial) -> None:
-    """Add the result of a comparison to a trial."""
-    trial.record.metrics["comparisons"] = float(result.comparisons)
-    trial.record.cases = result.comparisons
-    verdict = result.verdict
-    if isinstance(verdict, NotJudged):
-        trial.obstacle = verdict
-    trial.failures += getattr(verdict, "failures", ())
-    trial.known = getattr(verdict, "keys", ())
-    trial.judged = getattr(verdict, "cases", 0)
 
 
 @lru_cache(maxsize=1)

@@ -53,6 +53,7 @@ class Test:
         ``ts1``, ``ts2``, ``ts3``, ``bench`` or ``board``.
     distro, type : str
         The type is a message. For ``ts1``, the type is what a file defines, such as a service.
+        `distro` is empty for what concerns all of them.
     same : tuple of str
         All distributions that the result counts for, `distro` included: those with an equal
         definition of the type.
@@ -88,8 +89,9 @@ class Test:
     @property
     def title(self) -> str:
         """The name of the test for people."""
+        distros = f" ({', '.join(self.distros)})" if self.distro else ""
         bus = f", {self.bus_bytes}-byte bus" if self.bus_bytes else ""
-        return f"{self.type} ({', '.join(self.distros)}), {self.system}{bus}"
+        return f"{self.type}{distros}, {self.system}{bus}"
 
     @property
     def distros(self) -> tuple[str, ...]:

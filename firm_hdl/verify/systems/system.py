@@ -1,7 +1,7 @@
 """The interface of test systems, and functions that run tests and keep their records.
 
 A system lists all its tests before it runs one, so that a file of results can say what is missing.
-:func:`kept` takes the records of earlier sessions from a recorder, runs the other tests, says how
+:func:`kept` takes the records of earlier sessions from the file, runs the other tests, says how
 many are done, and writes each record to the file at once. Each system prints its own summary.
 """
 
@@ -36,15 +36,13 @@ from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 
 __all__ = [
-    "Judged",
     "Made",
-    "Recorder",
     "Stopwatch",
     "System",
     "Trial",
     "TypesSystem",
+    "counted",
     "failure_of",
-    "judged",
     "kept",
     "print_passes",
     "recorded",
@@ -60,69 +58,14 @@ MOST_CHARACTERS = 1000
 
 K = TypeVar("K")
 R = TypeVar("R")
-Made: TypeAlias = "Generator[Sequence[tuple[K, Record, Iterable[str]]], None, None]"
-"""Yields shares of results: the key of each test, its record, and the lines to print about it."""
+Made: TypeAlias = "Generator[Sequence[Record], None, None]"
+"""Yields records of tests; those that come together are written together."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Judged:
-    """A test, and its verdict.
-
-    Attributes
-    ----------
-    what : str
-        The name of the test for people: the type, its distributions, and how it was tested.
-    has_name : bool
-        False for a mutation: the user named the definition that it was made of.
-    """
-
-    what: str
-    verdict: Verdict
-    has_name: bool = True
-
-
-def judged(records: Iterable[Record]) -> list[Judged]:
-    """Return the tests of some records of one system with the verdicts that count."""
+def counted(records: Iterable[Record]) -> list[Record]:
+    """Return the records of one system with the verdicts that count."""
     by_key = {record.test.key: record for record in records}
-    return [
-        Judged(what=record.test.title, verdict=settled(record, by_key))
-        for record in by_key.values()
-    ]
-
-
-class Recorder:
-    """The file that records are written to, with the records of earlier sessions.
-
-    Parameters
-    ----------
-    writer : ResultsWriter or None
-        `None`: no file and no earlier session.
-    """
-
-    def __init__(self, writer: ResultsWriter | None = None):
-        self._writer = writer
-
-    def known(self, test: Test) -> Record | None:
-        """Return the record of an earlier session; `None` if there is none."""
-        return None if self._writer is None else self._writer.before.records.get(test.key)
-
-    def add(self, *records: Record) -> None:
-        """Write records; they are on the disk when this returns."""
-        if self._writer is not None and records:
-            self._writer.add(*records)
-
-    def resume(self, tests: Mapping[K, Test], what: str) -> dict[K, Record]:
-        """Return the records of earlier sessions, by the keys of `tests`; print how many there are.
-
-        Parameters
-        ----------
-        what : str
-            The name of a test in messages, in the plural.
-        """
-        found = {key: record for key, test in tests.items() if (record := self.known(test))}
-        if self._writer is not None and found:
-            print(f"{len(found)} of {len(tests)} {what} have a result in {self._writer.path}")
-        return found
+    return [replace(each, verdict=settled(each, by_key)) for each in by_key.values()]
 
 
 class System(ABC):
@@ -153,8 +96,11 @@ class System(ABC):
         return {}
 
     @abstractmethod
-    def run(self, recorder: Recorder) -> list[Judged]:
-        """Run the tests without a record; print a summary of all tests, and return them."""
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
+        """Run the tests that `writer` has no record of; print a summary of all, and return them.
+
+        The records have the verdicts that count.
+        """
 
 
 class TypesSystem(System):
@@ -297,8 +243,8 @@ def failure_of(what: str, record: Record) -> Iterator[str]:
 
 def print_passes(records: Iterable[Record], what: str) -> None:
     """Print how many tests of each distribution and bus pass, and how many are not judged."""
-    records = list(records)
-    verdicts = [each.verdict for each in judged(records)]
+    records = counted(records)
+    verdicts = [each.verdict for each in records]
     passed: Counter[tuple[int, str]] = Counter()
     total: Counter[tuple[int, str]] = Counter()
     for record, verdict in zip(records, verdicts, strict=True):
@@ -317,37 +263,46 @@ def print_passes(records: Iterable[Record], what: str) -> None:
 
 
 def kept(
-    tests: Mapping[K, Test],
-    recorder: Recorder,
-    run: Callable[[list[K]], Made[K]],
+    tests: Sequence[Test],
+    writer: ResultsWriter | None,
+    run: Callable[[list[Test]], Made],
+    lines_of: Callable[[Record], Iterable[str]],
     *,
     label: str,
     unit: str = "type",
-) -> dict[K, Record]:
+) -> list[Record]:
     """Run the tests that have no record, and write their records; return all records, in order.
 
     Parameters
     ----------
-    tests : mapping
-        All tests, by keys that the system chooses.
+    writer : ResultsWriter or None
+        The file of results, with the records of earlier sessions; `None`: there is none.
     run : callable
-        Takes the keys of the tests to run. Records that it yields together are synced together.
+        Takes the tests to run.
+    lines_of : callable
+        Returns the lines to print about a new record.
     label, unit : str
         What the line of progress says, and the name of a test there.
     """
-    records = recorder.resume(tests, f"{unit}s")
-    left = [key for key in tests if key not in records]
+    records: dict[Test, Record] = {}
+    if writer is not None:
+        before = writer.before.records
+        records = {test: before[test.key] for test in tests if test.key in before}
+        if records:
+            print(f"{len(records)} of {len(tests)} {unit}s have a result in {writer.path}")
+    left = [test for test in tests if test not in records]
     what = f"verify, {label}: {unit}s"
     stage(what, len(records), len(tests))
     with closing(run(left)) as shares:
         for share in shares:
-            recorder.add(*(record for _, record, _ in share))
-            for key, record, lines in share:
-                records[key] = record
-                for line in lines:
+            if writer is not None:
+                writer.add(*share)
+            for record in share:
+                records[record.test] = record
+                for line in lines_of(record):
                     print(line)
             stage(what, len(records), len(tests))
-    return {key: records[key] for key in tests}
+    return [records[test] for test in tests]
 
 
 def run_tests(
@@ -355,20 +310,17 @@ def run_tests(
     context: object,
     tests: Sequence[Test],
     command: Callable[[Test], str],
-    lines_of: Callable[[Record], Iterable[str]],
     *,
     most: int = 1,
     executor: str = PROCESSES,
     jobs: int | None = None,
-) -> Made[Test]:
+) -> Made:
     """Call ``work(context, test)`` for each test, and yield records when they are ready.
 
     Parameters
     ----------
     command : callable
         Returns the command that repeats a test.
-    lines_of : callable
-        Returns the lines to print about a record.
     most : int
         The largest number of tests that a process gets at once. Their records come together.
     """
@@ -379,8 +331,7 @@ def run_tests(
             if isinstance(result, Exception):
                 died = Failed((f"{type(result).__name__}: {result}",))
                 result = [Record(test=test, verdict=died) for test in share]
-            records = [replace(each, command=command(each.test)) for each in result]
-            yield [(each.test, each, lines_of(each)) for each in records]
+            yield [replace(each, command=command(each.test)) for each in result]
 
 
 def _work_share(

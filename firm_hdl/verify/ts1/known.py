@@ -532,16 +532,21 @@ KNOWN: tuple[Known, ...] = (
     ),
     _idl(
         "idl-lengths",
-        "rosidl_parser takes arrays of negative lengths.",
-        ours=(r"must be at least 1", r"-\s*\d+"),
+        "rosidl_parser takes arrays of negative lengths, and a wstring of no characters.",
+        ours=(r"must be at least 1", r"-\s*\d+|0+"),
     ),
     _idl(
         "idl-words",
-        "rosidl_parser takes words that run together.",
+        "rosidl_parser takes words that run together, and numbers that blanks part.",
         ours=(
-            r"^expected a name, not|is not a type; those of ROS|did you mean",
-            r";|(unsigned|short|long|u?int|octet|boolean|float|double|w?char|w?string)\w+",
+            r"^expected (a name|an operator or .*), not|is not a type; those of ROS|did you mean",
+            r";|(unsigned|short|long|u?int|octet|boolean|float|double|w?char|w?string)\w+|\d+",
         ),
+    ),
+    _idl(
+        "idl-names-after-arrays",
+        "rosidl_parser gives a name that follows an array its size.",
+        ours=(r"^'\w+' follows array '\w+'", r"\w+"),
     ),
     _idl(
         "idl-type-scopes",
@@ -563,8 +568,11 @@ KNOWN: tuple[Known, ...] = (
     ),
     _idl(
         "idl-defaults",
-        "rosidl_parser takes several defaults of a member, and one without a value.",
-        ours=(r"can have only one default|a default needs a value", r"@\s*default.*"),
+        "rosidl_parser takes several defaults of a member, and defaults of structs.",
+        ours=(
+            r"can have only one default|a default needs a value|builtin type can have a default",
+            r"@\s*default.*",
+        ),
     ),
     _idl(
         "idl-values",

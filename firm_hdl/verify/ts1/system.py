@@ -14,18 +14,11 @@ from typing import Any
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
+from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request, command_again
-from firm_hdl.verify.systems.system import (
-    Judged,
-    Made,
-    Recorder,
-    System,
-    failure_of,
-    kept,
-    run_tests,
-)
+from firm_hdl.verify.systems.system import Made, System, failure_of, kept, run_tests
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.judge import judge_case
 from firm_hdl.verify.ts1.mutate import mutation
@@ -175,12 +168,12 @@ class Ts1(System):
         mutated = {f"mutated {self.distro}": self.digest} if self.request.mutations else {}
         return {f"oracles of {self.distro}": sorted(oracles), **mutated}
 
-    def run(self, recorder: Recorder) -> list[Judged]:
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Judge everything. A named oracle that is not installed is a failure."""
         began = time.perf_counter()
         what = "mutation" if self.request.mutations else "definition"
-        tests = {test: test for test in self.cases}
-        records = kept(tests, recorder, self.judged, label=f"ts1 {self.distro}", unit=what).values()
+        label = f"ts1 {self.distro}"
+        records = kept(self.tests, writer, self.judged, self._lines_of, label=label, unit=what)
         print(*self.summary(records), sep="\n")
         differing = sum(
             max(1, sum(isinstance(each.verdict, Failed) for each in record.verdicts))
@@ -189,24 +182,20 @@ class Ts1(System):
         )
         count = f"{len(records)} {what}{'s' * (len(records) != 1)}"
         print(f"{count}, {time.perf_counter() - began:.0f} s, {differing} differences")
-        found = [
-            Judged(what=each.test.title, verdict=each.verdict, has_name=what == "definition")
-            for each in records
-        ]
         for name, why in self.missing.items() if self.request.oracles else ():
+            test = Test(system=self.name, distro=self.distro, type=f"oracle {name}")
             verdict = Failed((f"is not available: {why}",))
-            found.append(Judged(what=f"oracle {name}", verdict=verdict))
-        return found
+            records.append(Record(test=test, verdict=verdict))
+        return records
 
-    def judged(self, tests: Sequence[Test]) -> Made[Test]:
-        """Judge definitions; yield their tests, records and lines to print, in shares."""
+    def judged(self, tests: Sequence[Test]) -> Made:
+        """Judge definitions; yield their records in shares."""
         return run_tests(
             _judge,
             self.context,
             # The longest first, so that none of them is left at the end.
             sorted(tests, key=lambda test: -len(self.cases[test].text)),
             lambda test: self.command(test, self.request.oracles),
-            self._lines_of,
             most=_MOST_IN_A_SHARE,
             jobs=self.request.jobs,
         )

@@ -16,17 +16,16 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check
+from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
-    Judged,
     Made,
-    Recorder,
     Trial,
     TypesSystem,
+    counted,
     failure_of,
-    judged,
     kept,
     print_passes,
     recorded,
@@ -91,32 +90,24 @@ class Ts2(TypesSystem):
         """The folder of golden plans."""
         return {"golden": self._request.golden}
 
-    def run(self, recorder: Recorder) -> list[Judged]:
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Check all plans, and compare golden ones."""
         # Read the golden plans before any plan is made, so that errors show at once.
-        goldens = self._goldens
-        tests = {test: test for test in self._plans}
-        records = kept(tests, recorder, self._records, label="TS2", unit="plan")
-        print_passes(records.values(), "plans are sound")
-        shapes = {each.shape for each in records.values() if isinstance(each.verdict, Passed)}
-        print(f"{len(shapes)} different circuits")
-        found = judged(records.values())
-        if self._request.golden is not None:
-            found += self._compare(goldens, recorder)
-        return found
+        goldens, request = self._goldens, self._request
 
-    def _records(self, left: Sequence[Test]) -> Made[Test]:
-        request = self._request
-        return run_tests(
-            _checked,
-            request,
-            left,
-            self._command,
-            _lines_of,
-            most=MOST_IN_A_SHARE,
-            executor=request.executor,
-            jobs=request.jobs,
-        )
+        def checked(left: Sequence[Test]) -> Made:
+            return run_tests(
+                *(_checked, request, left, self._command),
+                most=MOST_IN_A_SHARE,
+                executor=request.executor,
+                jobs=request.jobs,
+            )
+
+        records = kept(self._plans, writer, checked, _lines_of, label="TS2", unit="plan")
+        print_passes(records, "plans are sound")
+        shapes = {each.shape for each in records if isinstance(each.verdict, Passed)}
+        print(f"{len(shapes)} different circuits")
+        return counted(records) + ([] if request.golden is None else self._compare(goldens, writer))
 
     @cached_property
     def _goldens(self) -> list[Golden]:
@@ -130,27 +121,32 @@ class Ts2(TypesSystem):
         wanted = {(distro, _plain(task.name)) for task in self._tasks for distro in task.same}
         return [each for each in goldens if (each.distro, _plain(each.plan.message)) in wanted]
 
-    def _compare(self, goldens: Sequence[Golden], recorder: Recorder) -> list[Judged]:
+    def _compare(self, goldens: Sequence[Golden], writer: ResultsWriter | None) -> list[Record]:
         """Compare golden plans."""
-        known = {
-            golden.path: record
-            for golden in goldens
-            if (record := recorder.known(self._golden_test(golden))) is not None
-        }
-        left = [golden for golden in goldens if golden.path not in known]
-        for result in check_golden(left, self._request.paths, depends=self._request.depends):
-            path, test = result.golden.path, self._golden_test(result.golden)
-            verdict = clipped_verdict(result.verdict)
-            command = self._command(test, golden=self._request.golden)
-            known[path] = record = Record(test=test, verdict=verdict, command=command)
-            recorder.add(record)
-            for text in failure_of(str(path), record):
-                print(text)
-        found = [Judged(what=str(path), verdict=known[path].verdict) for path in known]
+        request = self._request
+        tests = {self._golden_test(golden): golden for golden in goldens}
+
+        def compared(left: Sequence[Test]) -> Made:
+            chosen = [tests[test] for test in left]
+            results = check_golden(chosen, request.paths, depends=request.depends)
+            for test, result in zip(left, results, strict=True):
+                verdict = clipped_verdict(result.verdict)
+                command = self._command(test, golden=request.golden)
+                yield [Record(test=test, verdict=verdict, command=command)]
+
+        found = kept(
+            list(tests),
+            writer,
+            compared,
+            lambda record: failure_of(str(tests[record.test].path), record),
+            label="TS2",
+            unit="golden plan",
+        )
         differing = sum(isinstance(each.verdict, Failed) for each in found)
         print(f"golden plans: {len(goldens)} compared, {differing} differ")
+        whole = Test(system=self.name, distro="", type=f"golden plans of {request.golden}")
         none = NotJudged("none of them is of a type that was asked for")
-        return found or [Judged(what=f"golden plans of {self._request.golden}", verdict=none)]
+        return found or [Record(test=whole, verdict=none)]
 
     def _golden_test(self, golden: Golden) -> Test:
         return Test(

@@ -9,17 +9,16 @@ from dataclasses import replace
 from typing import Any
 
 from firm_hdl.verify.references.clients import find_references
+from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.simulators.programs import simulator
 from firm_hdl.verify.systems.options import Options, Request
 from firm_hdl.verify.systems.system import (
-    Judged,
     Made,
-    Recorder,
     System,
+    counted,
     failure_of,
-    judged,
     kept,
     print_passes,
     run_tests,
@@ -69,7 +68,7 @@ class Ts3(System):
         """The simulator and its version."""
         return {"simulator": f"{self._request.simulator} {self._version}".strip()}
 
-    def run(self, recorder: Recorder) -> list[Judged]:
+    def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Run all tasks with each of the options.
 
         Raises
@@ -77,12 +76,12 @@ class Ts3(System):
         ExecutorError
         """
         began = time.perf_counter()
-        found = [each for one in self._options for each in self._run(one, recorder)]
+        found = [each for one in self._options for each in self._run(one, writer)]
         failures = sum(isinstance(each.verdict, Failed) for each in found)
         print(f"{time.perf_counter() - began:.0f} s, {failures} failures")
         return found
 
-    def _run(self, options: Options, recorder: Recorder) -> list[Judged]:
+    def _run(self, options: Options, writer: ResultsWriter | None) -> list[Record]:
         """Run all tasks with one set of options."""
         tests = {task: test_of(task, options) for task in self._tasks}
         same: dict[Test, Test] = {}
@@ -98,25 +97,23 @@ class Ts3(System):
             if record.note and (notes[record.note] == 1 or options.bags):
                 yield f"note: {record.test.type} ({record.test.distro}): {record.note}"
 
-        def run(left: Sequence[Test]) -> Made[Test]:
+        def run(left: Sequence[Test]) -> Made:
             for is_shared in (False, True):
                 made = run_tests(
                     replay if options.bags else accepted,
                     replace(options, simulated=not is_shared),
                     [test for test in left if (test in same) == is_shared],
                     lambda test: command_of(options, test.type, distro=test.distro),
-                    lines_of,
                     executor=self._request.executor,
                     jobs=self._request.jobs,
                 )
                 for share in made:
-                    for test, record, _ in share:
-                        record.same_as = same[test].key if is_shared else ""
+                    for record in share:
+                        record.same_as = same[record.test].key if is_shared else ""
                     yield share
 
         label = f"{options.bus_bytes}-byte bus"
-        each = {test: test for test in tests.values()}
-        records = kept(each, recorder, run, label=label).values()
+        records = kept(list(tests.values()), writer, run, lines_of, label=label)
         if not options.bags:
             _repeat(notes)
         print_passes(records, "types pass")
@@ -125,7 +122,7 @@ class Ts3(System):
                 f"{shared} of {len(records)} types have the circuit of another, which was simulated"
             )
         _summarize([record for record in records if record.cycles], options)
-        return judged(records)
+        return counted(records)
 
 
 def _repeat(notes: Mapping[str, int]) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from amaranth.hdl import DomainRenamer, Elaboratable
 
+from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
 from firm_hdl.frontend import open_library
 from firm_hdl.gateware.packets import (
     PacketArbiter,
@@ -20,7 +21,6 @@ from firm_hdl.gateware.packets.memory import WhenFull
 from firm_hdl.gateware.parser import Parser
 from firm_hdl.model import Message
 from firm_hdl.node import Description, read_description_text
-from firm_hdl.node.description import LINKS
 from firm_hdl.node.gateware import NodeCore
 from firm_hdl.node.links import link_of
 
@@ -68,29 +68,53 @@ class Part:
     make: Callable[[], Elaboratable]
 
 
-TWO_TOPICS = """\
-node: two
-subscribe:
-  a: {type: geometry_msgs/msg/Twist, memory_bytes: 4096}
-publish:
-  b: {type: geometry_msgs/msg/Twist, memory_bytes: 4096}
-"""
-"""The description for a small core and for the links, as `firm_hdl.estimates.parts` has them."""
-
-
 def _described(text: str) -> Description:
     return read_description_text(text, library=open_library("lyrical", (), ()))
 
 
-def _core(text: str) -> NodeCore:
-    return NodeCore(_described(text))
+def _strings(memories: int, bus_bytes: int, link: str) -> Description:
+    """Describe a node of subscriptions and publications of `String`, with 4 KiB each."""
+    text = f"node: strings\nclock_mhz: 125\nbus_bytes: {bus_bytes}\nlink: {link}\n"
+    for kind, count in (("subscribe", (memories + 1) // 2), ("publish", memories // 2)):
+        rows = [
+            f"  {kind}_{number}: {{type: std_msgs/msg/String, memory_bytes: 4096}}\n"
+            for number in range(count)
+        ]
+        text += "".join([f"{kind}:\n" if rows else "", *rows])
+    return _described(text)
 
 
-def _link(kind: str) -> Part:
+def _core(memories: int, bus_bytes: int) -> Part:
+    return Part(
+        name="`NodeCore` of `String`",
+        parameters=f"{memories} memories, {bus_bytes} bytes",
+        make=lambda: NodeCore(_strings(memories, bus_bytes, "{kind: stream}")),
+    )
+
+
+def _link(kind: str, bus_bytes: int, memories: int = 2, peers: int = 0) -> Part:
+    given = f"address: 10.0.0.2, peers: {peers}" if peers else ""
+    parameters = f"{bus_bytes} bytes" + (f", {memories} memories, {peers} peers" if peers else "")
     return Part(
         name=f"link `{kind}`",
-        parameters="the defaults",
-        make=lambda: link_of(_described(f"{TWO_TOPICS}link: {{kind: {kind}}}\n")),
+        parameters=parameters,
+        make=lambda: link_of(_strings(memories, bus_bytes, f"{{kind: {kind}, {given}}}")),
+    )
+
+
+def _edge(ports: tuple[int, ...], groups: tuple[int, ...], fragment_bytes: int) -> Part:
+    return Part(
+        name="`EthernetEdge`",
+        parameters=f"{len(ports)} ports, {fragment_bytes} bytes for fragments",
+        make=lambda: EthernetEdge(
+            EthernetSettings(
+                mac=0x02_00_00_00_00_50,
+                address=0xC0_A8_32_32,
+                ports=ports,
+                groups=groups,
+                fragment_bytes=fragment_bytes,
+            )
+        ),
     )
 
 
@@ -145,6 +169,9 @@ def _crossing() -> Elaboratable:
 
 _CLOUD, _TWIST = "sensor_msgs/msg/PointCloud2", "geometry_msgs/msg/Twist"
 
+_PARTICIPANTS = ((1, 8), (2, 2), (2, 8), (2, 16), (6, 8))
+"""Memories and peers."""
+
 PARTS = (
     _parser(_TWIST),
     _parser(_CLOUD),
@@ -169,13 +196,14 @@ PARTS = (
     Part(
         name="`NodeCore`",
         parameters='4 subscriptions, `"drop"`; 4 publications, `"wait"`',
-        make=lambda: _core(EIGHT_TOPICS),
+        make=lambda: NodeCore(_described(EIGHT_TOPICS)),
     ),
-    Part(
-        name="`NodeCore`",
-        parameters="a subscription and a publication",
-        make=lambda: _core(TWO_TOPICS),
-    ),
-    *map(_link, LINKS),
+    # Those that the estimates of nodes come from.
+    *(_core(memories, bus_bytes) for bus_bytes in (1, 8) for memories in (2, 6)),
+    *(_link(kind, bus_bytes) for kind in ("stream", "uart", "udp") for bus_bytes in (1, 8)),
+    _link("rtps", 1, peers=8),
+    *(_link("rtps", 8, memories, peers) for memories, peers in _PARTICIPANTS),
+    _edge((7411,), (), 0),
+    _edge((7400, 7410, 7411), (0xEF_FF_00_01,), 1 << 14),
 )
 """The parts, in the order of the page."""

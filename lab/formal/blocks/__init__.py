@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lab.formal.blocks import (
+    axi_lite,
     claims,
     converters,
     crossings,
@@ -32,5 +33,6 @@ def all_studies() -> list[Study]:
         serializers,
         judges,
         drop_gate,
+        axi_lite,
     )
     return [study for module in modules for study in module.studies()]

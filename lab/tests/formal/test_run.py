@@ -19,7 +19,12 @@ LONGER = (
     *("slice/valid-stays", "arbiter/whole-packets", "router/order", "crossing/nothing-extra"),
     *("fifo-wait-1/one-outcome", "width-1-4/count", "gate-bool/input-moves"),
     *("gate-bool/output-moves", "parser-string/one-status", "tail-drop/room"),
-    *("record-reader/order", "record-writer/one-each", "gate-drop/output-moves"),
+    *(
+        "record-reader/order",
+        "record-writer/one-each",
+        "gate-drop/output-moves",
+        "axi-lite/answers",
+    ),
 )
 
 

@@ -47,10 +47,10 @@ def test_passes(ghdl, tmp_path, name, distro, bus_bytes):
     folder = tmp_path / "with space"
     packets = write_folder(folder, name, distro, bus_bytes)
     for seed, stalls in ((1, 40), (2, 0)):
-        status, output = run_script(
-            folder / "run_ghdl.sh", f"-gseed={seed}", f"-gstalls={stalls}", GHDL=ghdl
-        )
+        options = [f"-gseed={seed}", f"-gstalls={stalls}", f"--wave=w {seed}.vcd"]
+        status, output = run_script(folder / "run_ghdl.sh", *options, folder=tmp_path, GHDL=ghdl)
         assert status == 0, output
+        assert "$var" in (tmp_path / f"w {seed}.vcd").read_text()
         size = sum(map(len, packets))
         assert output.startswith(f"PASS {name}, "), output
         assert f": {len(packets)} packets, {size} bytes, " in output

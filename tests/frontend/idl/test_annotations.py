@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from .rosidl import read
+from .reading import read
 
 
 def members(text):

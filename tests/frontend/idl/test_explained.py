@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.errors import Diagnostic, Source
 from firm_hdl.frontend.idl.parse import parse_file
 
-from .rosidl import read
+from .reading import read
 
 RULE = "letters, digits and underscores, a letter first"
 

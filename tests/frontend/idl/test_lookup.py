@@ -13,7 +13,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.model import String
 
 from ..workspace import errors_of, make_files
-from .rosidl import read
+from .reading import read
 
 
 def library(tmp_path, files):

@@ -15,7 +15,7 @@ from tests.depth import by_depth
 from tests.frontend.workspace import make_files
 from tests.steps import calls_at_most
 
-from .rosidl import read
+from .reading import read
 
 
 def library(tmp_path, files, distro="lyrical"):

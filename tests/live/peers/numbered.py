@@ -5,7 +5,7 @@ The Python of ROS finds this module because it is in the folder of the script th
 
 import json
 
-from sensor_msgs.msg import Imu, PointCloud2, PointField
+from sensor_msgs.msg import Imu, LaserScan, PointCloud2, PointField
 
 
 def say(**what):
@@ -32,6 +32,14 @@ def cloud(number, size):
     ]
     message.data = (number.to_bytes(4, "little") * 4) * (size // 16)
     message.is_dense = True
+    return message
+
+
+def scan(number):
+    """As long as those of a usual lidar; a float holds each number that is here."""
+    message = LaserScan(range_max=30.0, ranges=[number + 0.5] * 180)
+    _stamp(message, number)
+    message.header.frame_id = "laser"
     return message
 
 

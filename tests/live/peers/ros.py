@@ -9,9 +9,11 @@ import sys
 import time
 
 import rclpy
-from numbered import cloud, imu, say, stamped
+from geometry_msgs.msg import Twist
+from numbered import cloud, imu, say, scan, stamped
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import Imu, PointCloud2
+from sensor_msgs.msg import Imu, LaserScan, PointCloud2
 from std_msgs.msg import Int32, String, UInt8MultiArray
 from std_srvs.srv import SetBool
 
@@ -36,27 +38,44 @@ def block(number, size):
     )
 
 
+def twist(number):
+    message = Twist()
+    message.linear.x, message.angular.z = float(number), -float(number)
+    return message
+
+
 def message_of(options, number):
     return {
         "imu": lambda: imu(number),
         "cloud": lambda: cloud(number, options.get("bytes", 0)),
         "block": lambda: block(number, options.get("bytes", 0)),
+        "scan": lambda: scan(number),
+        "twist": lambda: twist(number),
         "string": lambda: String(data=f"m{number}"),
     }[options["type"]]()
 
 
 def number_of(options, message):
     """Return the number of a message, or -1 if its content is not what that number's has to be."""
-    if options["type"] in ("imu", "cloud"):
+    if options["type"] in ("imu", "cloud", "scan"):
         number = stamped(message)
     elif options["type"] == "block":
         number = message.data[0] if message.data else -1
+    elif options["type"] == "twist":
+        number = int(message.linear.x)
     else:
         number = int(message.data[1:])
     return number if message == message_of(options, number) else -1
 
 
-TYPES = {"imu": Imu, "cloud": PointCloud2, "block": UInt8MultiArray, "string": String}
+TYPES = {
+    "imu": Imu,
+    "cloud": PointCloud2,
+    "block": UInt8MultiArray,
+    "scan": LaserScan,
+    "string": String,
+    "twist": Twist,
+}
 
 
 def publish(node, options):
@@ -128,6 +147,36 @@ def trip(node, options):
     return say(numbers=numbers, seconds=seconds)
 
 
+def come_and_go(node, options):
+    """Be another participant each time, which sends a message and waits until it comes back."""
+    say(ready=True)
+    back = 0
+    for number in range(options["count"]):
+        context = rclpy.Context()
+        rclpy.init(context=context)
+        peer = rclpy.create_node(f"peer{number}", context=context)
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(peer)
+        got = []
+        peer.create_subscription(String, options["back"], got.append, 10)
+        publisher = peer.create_publisher(String, options["to"], 10)
+        end = time.monotonic() + options.get("patience", 20)
+        sent = False
+        while not got and time.monotonic() < end:
+            executor.spin_once(timeout_sec=0.02)
+            if publisher.get_subscription_count() and peer.count_publishers(options["back"]):
+                if not sent:
+                    # Both sides have to know each other, and only one of them is asked here.
+                    executor.spin_once(timeout_sec=0.3)
+                    publisher.publish(String(data=f"m{number}"))
+                sent = True
+        back += [each.data for each in got] == [f"m{number}"]
+        executor.shutdown()
+        peer.destroy_node()
+        rclpy.shutdown(context=context)
+    say(back=back)
+
+
 def subscribe(node, options):
     numbers = []
     node.create_subscription(
@@ -147,7 +196,8 @@ def subscribe(node, options):
 
 def graph(node, options):
     say(ready=True)
-    end = time.monotonic() + options.get("patience", 20)
+    begin = time.monotonic()
+    end = begin + options.get("patience", 20)
     name, namespace = options["node"], options["namespace"]
     while time.monotonic() < end:
         rclpy.spin_once(node, timeout_sec=0.05)
@@ -156,6 +206,7 @@ def graph(node, options):
         publishers = node.get_publisher_names_and_types_by_node(name, namespace)
         if len(publishers) >= options["publishers"]:
             break
+    seconds = time.monotonic() - begin
     infos = []
     for topic in options.get("topics", []):
         # Names without a slash are those of DDS.
@@ -164,6 +215,7 @@ def graph(node, options):
         infos += node.get_subscriptions_info_by_topic(topic, no_mangle=raw)
     infos = [info for info in infos if info.node_name != node.get_name()]
     say(
+        seconds=seconds,
         owners=[[info.node_name, info.node_namespace] for info in infos],
         nodes=node.get_node_names_and_namespaces(),
         publishers=node.get_publisher_names_and_types_by_node(name, namespace),
@@ -252,6 +304,7 @@ if __name__ == "__main__":
     {
         "publish": publish,
         "trip": trip,
+        "come_and_go": come_and_go,
         "subscribe": subscribe,
         "graph": graph,
         "gone": gone,

@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """The folder of a bitstream, with tools that only pretend."""
 
 from __future__ import annotations
@@ -17,6 +18,10 @@ from firm_hdl.jobs.programs import yowasp_command
 from firm_hdl.node.bitstream import build
 from firm_hdl.node.bitstream.board import read_board
 from firm_hdl.node.bitstream.build import build_bitstream
+from firm_hdl.node.build import placed_on
+from firm_hdl.node.datasheet import node_datasheet
+from firm_hdl.node.node import Node
+from firm_hdl.node.top import node_ports
 from tests.export.strikes import left_when_outdated
 from tests.node.bitstream.samples import BITSTREAM, description, fake_tools
 
@@ -75,6 +80,20 @@ def test_a_bitstream_is_made_once_and_kept_with_its_report(made, tmp_path):
     assert replace(first, was_current=True) == made(said=said) and len(said) == 4
     assert not made(6, force=True).was_current
     assert left_when_outdated(folder, tmp_path / "copy") == set()
+
+
+def test_a_datasheet_has_what_was_measured_of_this_very_circuit(node):
+    inputs = read_manifest(node.folder)["inputs"]
+    own = inputs["accelerator_files"]
+    placed = placed_on(node.folder, inputs["design_sha256"], own)
+    given = description()
+    text = node_datasheet(
+        given, "pins", node_ports(Node(given)), module="m", vhdl_ports={}, placed=placed
+    )
+    row = "<td>ulx3s-45f</td><td>0 TRELLIS_COMB</td><td>10</td><td>7.5</td><td>measured: aclk"
+    assert row in text.replace(' class="n"', "")
+    assert placed_on(node.folder, "another circuit", own) == {}
+    assert placed_on(node.folder, inputs["design_sha256"], {"a.vhd": ""}) == {}
 
 
 def test_other_seeds_are_tried_if_one_nearly_reaches_the_clock(made):

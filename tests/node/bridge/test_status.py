@@ -126,7 +126,7 @@ def test_the_line_has_what_is_known():
     assert status_line(bridge, (0, 0)).endswith("clock +2 us")
     bridge.side.is_ready, bridge.side.session = False, None
     assert status_line(bridge, (0, 0)) == (
-        "echo, no board, to board 0/s, to graph 0/s, dropped 4321"
+        "echo, waits for the board, to board 0/s, to graph 0/s, dropped 4321"
     )
 
 

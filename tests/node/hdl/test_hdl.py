@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,7 @@ from firm_hdl.node.hdl import new_accelerator
 from firm_hdl.node.hdl.copies import accelerator_files
 from firm_hdl.node.hdl.netlist import verilog_of
 from tests.node.samples import LIBRARY, PACKAGES
+from tests.tools import run_script
 
 DESCRIPTION = """\
 node: Relay
@@ -61,8 +63,10 @@ def described(folder, value="", text=DESCRIPTION):
 def written(tmp_path):
     """Write the skeleton of an accelerator, with changes; return its description."""
 
-    def write(language, *changes, description=DESCRIPTION):
-        place, value = new_accelerator(described(tmp_path, text=description), language)
+    def write(language, *changes, description=DESCRIPTION, with_records=False):
+        place, value = new_accelerator(
+            described(tmp_path, text=description), language, with_records=with_records
+        )
         text = Path(place).read_text()
         for old, new in changes:
             assert old in text
@@ -110,6 +114,7 @@ def test_members_are_listed(tmp_path, capsys):
     [
         (["--board", "udp://localhost"], "the board udp://localhost has no waveform"),
         (["--wave", "."], "cannot write '.': Is a directory"),
+        (["--wave", "a.ghw"], "cannot write 'a.ghw': Verilator has the formats .vcd and .fst"),
     ],
 )
 def test_a_waveform_needs_a_simulation_and_a_file(tmp_path, capsys, options, text):
@@ -183,14 +188,136 @@ MORE_MISTAKES = [
         [(f"output logic [15:0] {GOES},", ""), (");\n", f");\n  logic [15:0] {GOES};\n")],
         f"'Relay' has no port '{GOES}'",
     ),
+    (
+        "vhdl",
+        [
+            ("entity Relay", "use work.p.all;\nentity Relay"),
+            (
+                "library",
+                "library ieee; use ieee.std_logic_1164.all; package p is subtype word_t is ",
+            ),
+            ("ieee;\nuse ieee.std", "std_logic_vector(0 to 15); end;\nlibrary ieee;\nuse ieee.std"),
+            (f"{CAME}  : in  std_logic_vector(15 downto 0)", f"{CAME} : in word_t"),
+            (f"{GOES}    <= ", f"{GOES}(11 downto 2) <= "),
+            (f"<= {CAME}", f"<= {CAME}(2 to 11)"),
+        ],
+        [
+            rf"Relay\.vhd:\d+:5: error: port '{CAME}' of 'Relay' has an ascending range",
+            rf"Relay\.vhd:\d+:5: error: nothing drives bit 0, 1, 12, .* of the output '{GOES}'",
+        ],
+    ),
+    # Verilator compares no widths while a port is missing.
+    (
+        "sv",
+        [
+            (f"input  logic [15:0] {CAME}", f"input  logic [0:15] {CAME}"),
+            (f"assign {GOES}", "assign publish_goes_data_last"),
+            ("publish_goes_data_ready", "publish_goes_ready"),
+            ("input  logic [31:0] time_sec", "input  logic [30:0] time_sec"),
+        ],
+        [
+            r"Relay\.sv:\d+:8: error: 'Relay' has no port 'publish_goes_data_ready'",
+            r"Relay\.sv:\d+:\d+: error: .* no member for the port 'publish_goes_ready'",
+            r"Relay\.sv:\d+:25: error: port 'time_sec' of 'Relay' must have 32 bits, not 31",
+            rf"port '{CAME}' of 'Relay' has an ascending range.*\[15:0\]",
+            rf"nothing drives the output '{GOES}' of 'Relay'",
+        ],
+    ),
 ]
 
 
-@pytest.mark.parametrize(("language", "changes", "text"), MORE_MISTAKES)
-def test_mistakes_that_tools_describe_badly(written, language, changes, text):
+@pytest.mark.parametrize(("language", "changes", "texts"), MORE_MISTAKES)
+def test_mistakes_that_tools_describe_badly(written, language, changes, texts):
     with pytest.raises(DefinitionError) as caught:
         load_accelerator(written(language, *changes, description=SMALL))
+    for text in [re.escape(texts)] if isinstance(texts, str) else texts:
+        assert re.search(text, str(caught.value)), str(caught.value)
+
+
+KIND = "work.std_msgs_msg_uint16_cdr_4_pkg.u_int16"
+STRUCT = "std_msgs_msg_uint16_cdr_4_sv_pkg::u_int16_t"
+
+# Of an accelerator whose ports are records.
+RECORD_MISTAKES = [
+    # As wide as the right one.
+    (
+        "vhdl",
+        [
+            (f"in  {KIND}_ready_t", f"in {KIND}_array_ready_t"),
+            ("<= publish_goes_rdy", "<= publish_goes_rdy.item"),
+        ],
+        f"port 'publish_goes_rdy' of 'Relay' must have the type {KIND}_ready_t",
+    ),
+    (
+        "vhdl",
+        [("publish_goes <= subscribe_came", "publish_goes.data.data <= subscribe_came.data.data")],
+        "nothing drives 'publish_goes.data.valid' of 'Relay'",
+    ),
+    (
+        "sv",
+        [(f"output {STRUCT}", "output logic [3:0]")],
+        f"port 'publish_goes' of 'Relay' must have the type {STRUCT}, which has 17 bits, not 4",
+    ),
+    ("sv", [("endmodule", "assign publish_goes.data.size = 0; endmodule")], "'size' not found"),
+]
+
+
+@pytest.mark.parametrize(("language", "changes", "text"), RECORD_MISTAKES)
+def test_mistakes_in_records(written, language, changes, text):
+    with pytest.raises(DefinitionError, match=r"Relay\.\w+:\d+:\d+: error: ") as caught:
+        load_accelerator(written(language, *changes, description=SMALL, with_records=True))
     assert text in str(caught.value)
+
+
+def test_packages_that_are_not_there(written):
+    description = written("vhdl", description=SMALL, with_records=True)
+    hdl = replace(description.hdl, has_records=False)
+    with pytest.raises(DefinitionError, match=r"uint16_cdr_4_pkg.* with 'ports: records'"):
+        load_accelerator(replace(description, hdl=hdl))
+
+
+BENCH_OF_RECORDS = """module tb;
+  reg [15:0] came;
+  wire [15:0] goes;
+  reg valid, ready;
+  wire valid_out, ready_out;
+  integer n;
+  Relay_plain dut (
+    .aclk(1'b0), .aresetn(1'b1), .time_sec(32'd0), .time_nanosec(32'd0),
+    .subscribe_came_data_data(came), .subscribe_came_data_valid(valid),
+    .subscribe_came_data_ready(ready_out), .publish_goes_data_data(goes),
+    .publish_goes_data_valid(valid_out), .publish_goes_data_ready(ready)
+  );
+  initial begin
+    for (n = 0; n < 100; n = n + 1) begin
+      came = $random; {valid, ready} = n;
+      #1 if (goes !== came || {valid_out, ready_out} !== {valid, ready}) $display("wrong %d", n);
+    end
+    $display("done");
+    $finish;
+  end
+endmodule
+"""
+
+
+@pytest.mark.parametrize("language", ["vhdl", pytest.param("sv", marks=pytest.mark.thorough)])
+def test_records_have_the_bits_of_plain_ports(written, tmp_path, language, ghdl, iverilog):
+    accelerator = load_accelerator(written(language, description=SMALL, with_records=True))
+    accelerator._MustUse__used = True
+    (name,) = accelerator.modules
+    (tmp_path / name).write_text(accelerator.modules[name])
+    (tmp_path / "tb.v").write_text(BENCH_OF_RECORDS)
+    make, run = "iverilog -o tb", "./tb"
+    if language == "sv":
+        # Icarus Verilog has no structs in packages.
+        make, run = "verilator --binary --timing --timescale 1ns/1ns -Wno-fatal -O0", "obj_dir/Vtb"
+        make += " --top-module tb -MAKEFLAGS OPT_FAST=-O0"
+    said = subprocess.run(
+        [*make.split(), name, "tb.v"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert said.returncode == 0, said.stderr
+    done = subprocess.run([run], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("done")
 
 
 @pytest.mark.parametrize(
@@ -212,6 +339,7 @@ def test_one_name_in_two_files_is_refused(written, tmp_path, language, text):
 
 READ = [
     ("{vhdl: a.vhd}", ("vhdl", ("a.vhd",), "a")),
+    ("{verilog: a.v, ports: structs}", "Verilog has no records: write 'systemverilog' as the key"),
     ("{verilog: [b.v, x/a.v], entity: Top}", ("verilog", ("b.v", "x/a.v"), "Top")),
     ("{vdhl: a.vhd}", "an accelerator has no 'vdhl'; did you mean 'vhdl'?"),
     ("{entity: a}", "an accelerator has the files of one of vhdl, verilog, systemverilog"),
@@ -244,7 +372,7 @@ def test_a_file_that_is_not_there(tmp_path):
 
 
 def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
-    description = written("vhdl", description=SMALL)
+    description = written("vhdl", description=SMALL, with_records=True)
     source = tmp_path / "Relay.vhd"
     data = source.read_bytes().replace(b"\n", b"\r\n") + "-- r\u00fchrt\r\n".encode("latin-1")
     source.write_bytes(data)
@@ -255,7 +383,10 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     # Node and entity have one name.
     assert built.folder.name == "Relay_node"
     files = (built.folder / "vhdl" / "files.txt").read_text().split()
-    assert files[0] == "accelerator/Relay.vhd"
+    assert [file for file in files if not file.endswith("_pkg.vhd")][:2] == [
+        "accelerator/Relay.vhd",
+        "Relay_plain.vhd",
+    ]
     core = yaml.safe_load((built.folder / "Relay_node.core").read_text().partition("\n")[2])
     assert core["targets"]["sim"]["filesets"][:2] == ["accelerator", "vhdl"]
     assert "sim_verilog" not in core["targets"]
@@ -263,10 +394,10 @@ def test_a_node_of_vhdl_is_built_and_runs(written, tmp_path, ghdl):
     records = json.loads((built.folder / "manifest.json").read_text())["records"]
     assert records == {"built": False, "reason": "The accelerator takes all messages"}
     assert not (built.folder / "systemverilog").exists()
-    said = subprocess.run(
-        ["sh", built.folder / "vhdl" / "run_ghdl.sh"], capture_output=True, text=True, check=True
-    )
-    assert "PASS node Relay_node: " in said.stdout
+    run = built.folder / "vhdl" / "run_ghdl.sh"
+    status, output = run_script(run, "--wave=node.ghw", folder=tmp_path)
+    assert status == 0 and "PASS node Relay_node: " in output
+    assert (tmp_path / "node.ghw").read_bytes().startswith(b"GHDLwave")
     # A change of the user's file makes the folder outdated.
     source.write_bytes(data + b"-- changed\n")
     assert not build_node(description, tmp_path, stimuli=stimuli).was_current
@@ -291,6 +422,16 @@ def test_a_node_of_systemverilog_is_built_and_runs(written, tmp_path, iverilog, 
     assert "PASS node Relay_node: " in said.stdout
 
 
+@pytest.mark.thorough
+def test_a_node_with_structs_is_built_and_runs(written, tmp_path, verilator):
+    description = written("sv", description=SMALL, with_records=True)
+    folder = build_node(description, tmp_path, stimuli=stimuli).folder
+    assert not (folder / "run_iverilog.sh").exists()
+    status, output = run_script(folder / "run_verilator.sh", "--wave=node.vcd", folder=tmp_path)
+    assert status == 0 and "PASS node Relay_node: " in output, output
+    assert "$timescale" in (tmp_path / "node.vcd").read_text()
+
+
 def test_files_that_are_included_keep_their_folders(written, tmp_path, iverilog, verilator):
     include = [("module Relay", '`include "inc/one.svh"\n`include "../two.svh"\nmodule Relay')]
     (tmp_path / "rtl" / "inc").mkdir(parents=True)
@@ -311,9 +452,11 @@ def test_files_that_are_included_keep_their_folders(written, tmp_path, iverilog,
         },
         {"accelerator/two.svh": {"is_include_file": True, "include_path": "accelerator/rtl"}},
     ]
-    run = ["sh", folder / "run_iverilog.sh"]
-    said = subprocess.run(run, capture_output=True, text=True, check=True)
-    assert "PASS node Relay_node: " in said.stdout
+    run = folder / "run_iverilog.sh"
+    status, output = run_script(run, "--wave=node.fst", folder=tmp_path)
+    assert status == 0 and "PASS node Relay_node: " in output
+    # The header of FST has 329 bytes.
+    assert (tmp_path / "node.fst").read_bytes().startswith(b"\0\0\0\0\0\0\0\1\x49")
 
 
 def test_an_include_by_an_absolute_path_is_refused(written, tmp_path, verilator):

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from amaranth.hdl import ClockSignal, Instance, Module
 from amaranth.lib import stream, wiring
@@ -32,14 +35,21 @@ class Sum(wiring.Component):
 
 
 @pytest.mark.thorough
-def test_verilator_compiles_them_too(programs, verilator, tmp_path):
+@pytest.mark.parametrize("suffix", ["vcd", "fst"])
+def test_verilator_compiles_them_too(programs, verilator, tmp_path, suffix):
+    if suffix == "fst" and not Path("/usr/include/lz4.h").exists():
+        pytest.skip("there is no lz4")
     options = {"engine": "verilator", "options": ["-O0"], "cache": programs}
-    wave = tmp_path / "sum.vcd"
+    wave = tmp_path / f"sum.{suffix}"
     with FastSimulation(Sum(), modules=MODULES, wave=wave, **options) as simulation:
         simulation.send("i", [1, 2, 30])
         simulation.run(5)
         assert simulation.get("o") == 33
+    if suffix == "fst":
+        assert wave.read_bytes().startswith(b"\0\0\0\0\0\0\0\1\x49")
+        return
     # What is inside of the module is in the waveform.
+    assert re.search(r"\$timescale\s+1ns", wave.read_text()) and "#10\n" in wave.read_text()
     assert "scope module add" in wave.read_text() and "b00100001 " in wave.read_text()
 
 

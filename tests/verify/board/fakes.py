@@ -11,7 +11,6 @@ from firm_hdl.plan import decode, encode
 from firm_hdl.verify.board.description import loop_text
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Recorder
 from tests.node.bridge.fakes import FakeBoard
 
 __all__ = ["BOTH", "STRING", "LoopNode", "described", "verdicts"]
@@ -102,4 +101,4 @@ def verdicts(loop_node, description=None, names=(), loses=lambda frame: False, *
     # A request is repeated before a board counts as silent.
     board.repeat_seconds = 0.05
     with Boards(description, request, board) as system:
-        return {each.what.split()[0]: each.verdict for each in system.run(Recorder())}
+        return {each.test.type: each.verdict for each in system.run(None)}

@@ -13,7 +13,6 @@ from firm_hdl.verify.board.description import chosen_loops, loop_text
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Recorder
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described, verdicts
 
@@ -229,6 +228,28 @@ def test_each_fault_of_a_board_is_found(fault, capsys):
     assert "firm-hdl verify --board fake --silent-seconds 0.2 --distro lyrical" in printed
 
 
+class DropsTheFirstLoop(LoopNode):
+    """Nothing comes back from the first of its loops."""
+
+    def send(self, topic, packet, tag=0):
+        first = next(iter(self.loops.values()))
+        return [] if topic == first else super().send(topic, packet, tag)
+
+
+def test_each_of_several_loops_of_a_type_has_its_own_record():
+    """Otherwise, the record of the last one would hide those of the others."""
+    topics = [f"  /{way}{n}: {{type: {BOTH[0]}}}\n" for way in ("in", "out") for n in (1, 2)]
+    text = "node: n\nlink: udp\nsubscribe:\n{}{}publish:\n{}{}".format(*topics)
+    description = read_description_text(text)
+    request = Request(board="fake", node="n.yaml", most_cases=4, references=(), silent_seconds=0.2)
+    board = FakeBoard(DropsTheFirstLoop(description))
+    board.repeat_seconds = 0.05
+    with Boards(description, request, board) as system:
+        records = system.run(None)
+    assert [record.verdict.name for record in records] == ["failed", "passed"]
+    assert ["topic=/in1" in record.test.key for record in records] == [True, False]
+
+
 def test_a_board_that_is_gone_fails_what_is_left_at_once():
     node = Mute(described(*BOTH))
     found = list(verdicts(node, silent_seconds=0.2).values())
@@ -283,7 +304,7 @@ def test_a_board_is_opened_once_as_long_as_it_answers(kind, opened, silent):
     board = FakeBoard(kind(description))
     request = Request(board="fake", most_cases=4, references=(), silent_seconds=silent)
     with Boards(description, request, board) as system:
-        assert len(system.run(Recorder())) == 2
+        assert len(system.run(None)) == 2
     assert board.opened == opened
 
 

@@ -10,32 +10,18 @@ from firm_hdl.verify.board import system
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Recorder
 from tests.node.bridge.fakes import FakeBoard
 from tests.verify.board.fakes import BOTH, STRING, LoopNode, described
 
 ONE = described(STRING)
 
 
-class Kept(Recorder):
-    """Keeps the records that a file would have."""
-
-    def __init__(self):
-        super().__init__()
-        self.records = []
-
-    def add(self, *records):
-        self.records += records
-
-
 def records_of(monkeypatch, judge_loop, description=ONE, **given):
     """Return the records of a run in which something else judges each type."""
     monkeypatch.setattr(system, "judge_loop", judge_loop)
     request = Request(**{"board": "fake", "references": (), **given})
-    recorder = Kept()
     with Boards(description, request, FakeBoard(LoopNode(description))) as boards:
-        boards.run(recorder)
-    return recorder.records
+        return boards.run(None)
 
 
 def judges_well(talk, description, loop, options, trial):

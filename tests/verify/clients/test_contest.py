@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.verify.clients.divergences import Finding, KnownDivergence
-from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.references.client import (
     Client,
     ClientDiedError,
@@ -14,6 +13,7 @@ from firm_hdl.verify.references.client import (
     UnsupportedError,
 )
 from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from tests.verify.clients.twins import compared
 
 
 class Bytes(Codec):
@@ -63,64 +63,50 @@ def message(make_message):
     return make_message("uint8 a\n")
 
 
-def contest(codec, right=None):
-    return LibraryComparison(
-        CodecClient("mine", codec), CodecClient("right", right or Bytes()), "cdr"
-    )
-
-
 VALUES = [{"a": 1}, {"a": 7}, {"a": 200}]
+
+
+def contest(message, codec, right=None, values=VALUES):
+    library, reference = CodecClient("mine", codec), CodecClient("right", right or Bytes())
+    return compared(library, reference, message, values)
 
 
 def test_refusals_of_the_reference_are_compared_but_are_no_answers(message):
     # Both refuse one of the values, so no packet of it is decoded.
-    trial = contest(Bytes(), Bytes(most=100)).judge(message, VALUES[:2])
-    assert (trial.findings, trial.unknown) == ([], 0)
-    all_answers = trial.answers
-    trial = contest(Bytes(most=100), Bytes(most=100)).judge(message, VALUES)
-    assert trial.unknown == 0
-    # The library refused to encode the third value.
-    assert trial.answers == all_answers
-    none = contest(Bytes(most=0), Bytes(most=0)).judge(message, VALUES)
-    assert none.answers == 0 and none.comparisons == len(VALUES)
+    two = contest(message, Bytes(), Bytes(most=100), VALUES[:2])
+    three = contest(message, Bytes(most=100), Bytes(most=100))
+    assert three.verdict == Passed(two.verdict.cases + 1)
+    none = contest(message, Bytes(most=0), Bytes(most=0))
+    assert none.record.cases == len(VALUES)
     assert none.verdict == NotJudged("right had no answer to anything")
 
 
 def test_each_value_is_written_and_read(message):
-    trial = contest(Bytes()).judge(message, VALUES)
-    assert 2 * len(VALUES) <= trial.answers < trial.comparisons
-    assert trial.verdict == Passed(trial.comparisons)
-    assert (trial.library, trial.reference, trial.type) == ("mine", "right", "p/msg/A")
-    more = contest(Bytes()).judge(message, [*VALUES, {"a": 3}])
-    assert more.answers == trial.answers + 2
+    trial = contest(message, Bytes())
+    cases = trial.record.cases
+    assert cases > 2 * len(VALUES) and trial.verdict == Passed(cases)
+    more = contest(message, Bytes(), values=[*VALUES, {"a": 3}])
+    assert more.record.cases == cases + 2
 
 
-def test_every_difference_is_counted_and_the_first_of_each_kind_kept(message):
-    trial = contest(Wrong()).judge(message, VALUES)
-    assert trial.unknown >= 2
-    (finding,) = (each for each in trial.findings if each.what == "decode")
-    assert (finding.value, finding.packet) == ({"a": 7}, b"\0\1\0\0\7")
-    assert (finding.expected, finding.got) == ({"a": 7}, {"a": 8})
-    assert (finding.library, finding.reference, finding.wire) == ("mine", "right", "cdr")
-    assert len({each.what for each in trial.findings}) == len(trial.findings)
+def test_the_first_difference_of_each_kind_is_shown(message):
+    failures = contest(message, Wrong()).failures
     lines = ["decode differs from right", "uint8 a", "value: a: 7", "packet: 0001000007"]
-    assert "\n".join([*lines, "right: a: 7", "mine: a: 8"]) in trial.verdict.failures
+    assert "\n".join([*lines, "right: a: 7", "mine: a: 8"]) in failures
+    assert len({text.partition("\n")[0] for text in failures}) == len(failures) > 1
 
 
 def test_a_codec_that_cannot_be_opened_is_not_judged_or_fails(message):
-    unsupported = contest(UnsupportedError("no such type"))
-    assert unsupported.judge(message, VALUES).verdict == NotJudged("no such type")
-    assert unsupported.ask(message, "encode", VALUES[0]) is None
-    assert contest(UnsupportedError()).judge(message, VALUES).verdict == NotJudged(
-        "the type is not supported"
-    )
-    died = contest(ClientDiedError("it died")).judge(message, VALUES)
-    assert died.verdict == Failed(("it died",))
+    for error, reason in (
+        (UnsupportedError("no such type"), "no such type"),
+        (UnsupportedError(), "the type is not supported"),
+    ):
+        assert contest(message, error).verdict == NotJudged(reason)
+    assert contest(message, ClientDiedError("it died")).verdict == Failed(("it died",))
     for ours, theirs, name in ((("ros1",), None, "mine"), (None, ("ros1",), "right")):
-        both = LibraryComparison(
-            CodecClient("mine", Bytes(), ours), CodecClient("right", Bytes(), theirs), "cdr"
-        )
-        assert both.judge(message, VALUES).verdict == NotJudged(f"{name} does not speak cdr")
+        both = CodecClient("mine", Bytes(), ours), CodecClient("right", Bytes(), theirs)
+        found = compared(*both, message, VALUES)
+        assert found.verdict == NotJudged(f"{name} does not speak cdr")
 
 
 def finding_of(message, **more):

@@ -9,8 +9,8 @@ import pytest
 
 from firm_hdl.cases.values import shown
 from firm_hdl.model import PRIMITIVES, Message, String
-from firm_hdl.verify.clients.divergences import KNOWN
-from firm_hdl.verify.clients.judge import LibraryComparison
+from firm_hdl.verify.clients.divergences import KNOWN, Finding, known_keys
+from firm_hdl.verify.clients.unusual import unusual_packet, unusual_value
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.objects import definition_text
 from tests.verify.clients.examples import EXAMPLES
@@ -18,20 +18,32 @@ from tests.verify.clients.examples import EXAMPLES
 PAGE = Path(__file__).parents[3] / "docs" / "reference" / "divergences.md"
 
 
-@pytest.fixture
-def ask_example(library_here, make_message):
-    """Ask for an example; return the difference and its keys."""
-
-    def ask(example):
-        contest = LibraryComparison(
-            library_here(example.library),
-            library_here(example.reference),
-            "ros1" if example.distro == "noetic" else "cdr",
-        )
-        message = make_message(example.text, example.distro)
-        return contest.ask(message, example.what, example.value)
-
-    return ask
+def ask(library, reference, message, what, value):
+    """Ask both libraries one question; return the difference and its keys."""
+    codecs = [each.open(message, message.wire) for each in (library, reference)]
+    case, packet = what.removeprefix("encode").strip(), b""
+    if what.startswith("encode"):
+        value = unusual_value(message, value, case) if case else value
+        answers = [each.encode_all([value])[0] for each in codecs]
+    else:
+        (packet,) = codecs[1].encode_all([value])
+        if what != "decode":
+            packet = unusual_packet(message, message.wire, value, what)
+        answers = [each.decode_all([packet])[0] for each in codecs]
+    got, expected = answers
+    assert expected != got
+    finding = Finding(
+        library=library.name,
+        reference=reference.name,
+        wire=message.wire,
+        what=what,
+        message=message,
+        value=value,
+        packet=packet,
+        expected=expected,
+        got=got,
+    )
+    return finding, known_keys(finding, *codecs)
 
 
 def block(finding):
@@ -61,8 +73,11 @@ def section(key):
 
 @pytest.mark.sampled(7)
 @pytest.mark.parametrize("key", EXAMPLES)
-def test_divergence_is_known_by_its_key_and_shown(ask_example, key):
-    finding, keys = ask_example(EXAMPLES[key])
+def test_divergence_is_known_by_its_key_and_shown(library_here, make_message, key):
+    example = EXAMPLES[key]
+    both = library_here(example.library), library_here(example.reference)
+    message = make_message(example.text, example.distro)
+    finding, keys = ask(*both, message, example.what, example.value)
     assert list(keys) == [key]
     assert block(finding) in section(key)
 
@@ -75,9 +90,8 @@ def test_every_key_has_an_example_and_a_section():
 
 
 def test_a_known_divergence_hides_no_other(library_here, make_message):
-    contest = LibraryComparison(library_here("rosbags"), library_here("fastcdr"), "cdr")
     message = make_message("byte a\nuint16 b\n")
-    codec = contest.library.open(message, "cdr")
+    codec = library_here("rosbags").open(message, "cdr")
 
     class Wrong(type(codec)):
         def write(self, value):
@@ -92,9 +106,10 @@ def test_a_known_divergence_hides_no_other(library_here, make_message):
     def opened(*given):
         return Wrong(message, "cdr")
 
-    contest.library = type("Twin", (), {"name": "rosbags", "wires": {"cdr"}, "open": opened})()
+    twin = type("Twin", (), {"name": "rosbags", "open": opened})()
     for what in ("encode", "decode"):
-        finding, keys = contest.ask(message, what, {"a": 254, "b": 7})
+        value = {"a": 254, "b": 7}
+        finding, keys = ask(twin, library_here("fastcdr"), message, what, value)
         assert not keys and finding.what == what
 
 

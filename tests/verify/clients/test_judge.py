@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.clients.judge import LibraryComparison
+from firm_hdl.cases.values import shown
 from firm_hdl.verify.clients.unusual import UNUSUAL_CASES, unusual_packets
 from firm_hdl.verify.references.client import Refusal
-from firm_hdl.verify.results.verdict import Failed, NotJudged
-from tests.verify.clients.twins import Same, Twin
+from firm_hdl.verify.results.verdict import NotJudged
+from tests.verify.clients.twins import Same, Twin, compared
 from tests.verify.judged import assert_known, assert_passed
 
 TEXT = "uint8 a\nfloat64 b\nuint16 c\nuint16 d\nstring s\nB[] list\nbool t\n"
@@ -49,9 +49,9 @@ class AcceptsTruncated(Same):
 
 @pytest.fixture
 def contest(library_here):
-    """Return a contest of a broken library with rosbags, which is correct."""
+    """Compare a broken library with rosbags, which is correct."""
     right = library_here("rosbags")
-    return lambda fault: LibraryComparison(Twin(right, fault), right, "cdr")
+    return lambda fault, message: compared(Twin(right, fault), right, message, VALUES)
 
 
 @pytest.fixture
@@ -60,8 +60,8 @@ def message(make_message):
 
 
 def test_equal_libraries_have_no_differences(contest, message):
-    trial = contest(Same).judge(message, VALUES)
-    assert assert_passed(trial) == trial.comparisons > 30
+    trial = contest(Same, message)
+    assert assert_passed(trial) == trial.record.cases > 30
 
 
 @pytest.mark.parametrize(
@@ -69,27 +69,25 @@ def test_equal_libraries_have_no_differences(contest, message):
     [(WithoutPadding, "encode"), (SwappedFields, "decode"), (AcceptsTruncated, "cut-1")],
 )
 def test_faults_are_found_and_shown_with_a_small_value(contest, message, fault, what):
-    trial = contest(fault).judge(message, VALUES)
-    assert isinstance(trial.verdict, Failed)
-    (finding,) = [each for each in trial.findings if each.what == what]
-    assert finding.expected != finding.got
+    trial = contest(fault, message)
+    (text,) = (text for text in trial.failures if text.startswith(f"{what} differs from rosbags"))
     # Only the value that is not the smallest shows that two fields are swapped.
-    assert finding.value == VALUES[0 if fault in (SwappedFields, WithoutPadding) else 1]
+    value = VALUES[0 if fault in (SwappedFields, WithoutPadding) else 1]
+    assert f"\nvalue: {shown(message, value)}\n" in text
 
 
 def test_a_type_that_a_library_lacks_is_not_judged(library_here, make_message):
-    both = LibraryComparison(library_here("cyclonedds"), library_here("rosbags"), "cdr")
-    trial = both.judge(make_message("wstring w\n"), [])
+    both = library_here("cyclonedds"), library_here("rosbags")
+    trial = compared(*both, make_message("wstring w\n"), [])
     assert trial.verdict == NotJudged("cyclonedds has no wstring")
-    wide = both.judge(make_message("uint8[<=65536] w\n"), [])
+    wide = compared(*both, make_message("uint8[<=65536] w\n"), [])
     assert wide.verdict == NotJudged("cyclonedds has no bound of 65536 elements")
-    trial = both.judge(make_message("uint8[<=65535] w\n"), [{"w": [1]}])
+    trial = compared(*both, make_message("uint8[<=65535] w\n"), [{"w": [1]}])
     assert_known(trial, "cyclonedds-cut", "rosbags-trailing")
     # No library was asked.
-    none = both.judge(make_message("uint8[<=65535] w\n"), [])
+    none = compared(*both, make_message("uint8[<=65535] w\n"), [])
     assert none.verdict == NotJudged("rosbags had no answer to anything")
-    other = LibraryComparison(library_here("cyclonedds"), library_here("rosbags"), "ros1")
-    trial = other.judge(make_message("int8 w\n"), [])
+    trial = compared(*both, make_message("int8 w\n"), [], "ros1")
     assert trial.verdict == NotJudged("cyclonedds does not speak ros1")
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from firm_hdl.model import PRIMITIVES, Field, Message
-from firm_hdl.verify.clients.judge import LibraryComparison
 from firm_hdl.verify.clients.system import reference_of
 from firm_hdl.verify.references.client import Refusal
 from firm_hdl.verify.references.clients import client
-from tests.verify.clients.twins import Same, Twin
+from tests.verify.clients.twins import Same, Twin, compared
 
 ROS2 = PRIMITIVES["ros2"]
 
@@ -21,11 +20,9 @@ def test_refusing_a_correct_packet_is_a_difference():
     kinds = {"f0": ROS2["uint8"], "f1": ROS2["uint16"]}
     fields = tuple(Field(name=name, type=kind) for name, kind in kinds.items())
     message = Message(name="p/msg/A", dialect="ros2", fields=fields)
-    trial = LibraryComparison(
-        Twin(client("firm-hdl"), RefusesAll), client("firm-hdl"), "cdr"
-    ).judge(message, [{"f0": 1, "f1": 2}])
-    assert trial.verdict.name == "failed"
-    kinds = {finding.what for finding in trial.findings}
+    library, values = Twin(client("firm-hdl"), RefusesAll), [{"f0": 1, "f1": 2}]
+    trial = compared(library, client("firm-hdl"), message, values)
+    kinds = {text.partition(" ")[0] for text in trial.failures}
     assert "decode" in kinds and "pad-1" in kinds and "cut-1" not in kinds
 
 

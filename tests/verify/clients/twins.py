@@ -2,9 +2,20 @@
 
 from __future__ import annotations
 
+from firm_hdl.verify.clients.judge import compare
 from firm_hdl.verify.references.client import Client, Codec
+from firm_hdl.verify.systems.system import Trial
+from tests.verify.report.samples import a_test
 
-__all__ = ["Same", "Twin"]
+__all__ = ["Same", "Twin", "compared"]
+
+
+def compared(library, reference, message, values, wire="cdr"):
+    """Compare two libraries; return the trial."""
+    trial = Trial.of(a_test())
+    has_type = compare(library, reference, message, wire, values, trial)
+    assert has_type or trial.obstacle is not None
+    return trial
 
 
 class Twin(Client):

@@ -11,7 +11,6 @@ from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.user_oracle import judge_of
 from firm_hdl.cli import main
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.results.records import settled
 from firm_hdl.verify.results.verdict import (
     Failed,
     KnownDifference,
@@ -19,7 +18,7 @@ from firm_hdl.verify.results.verdict import (
     Passed,
 )
 from firm_hdl.verify.run import failure
-from firm_hdl.verify.systems.system import Judged
+from firm_hdl.verify.systems.options import Request
 from tests.frontend.workspace import make_files
 from tests.verify.report.samples import a_record, a_test
 
@@ -29,7 +28,10 @@ FEW = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken", "--distro", 
 
 
 def found(*verdicts):
-    return [Judged(what=f"p/msg/T{n} (lyrical), ts3", verdict=v) for n, v in enumerate(verdicts)]
+    return [a_record(a_test(f"p/msg/T{n}"), verdict=v) for n, v in enumerate(verdicts)]
+
+
+ALL, NAMED = Request(), Request(types=("p/msg/T",))
 
 
 @pytest.mark.parametrize(
@@ -46,16 +48,18 @@ def found(*verdicts):
     ],
 )
 def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
-    assert (not failure(found(*verdicts), is_named=False)) is of_all
-    assert (not failure(found(*verdicts), is_named=True)) is named
+    assert (not failure(found(*verdicts), ALL)) is of_all
+    assert (not failure(found(*verdicts), NAMED)) is named
 
 
 def test_mutations_of_a_named_type_need_no_judgement():
-    mutation = Judged(what="p/msg/T (lyrical), ts1", verdict=SILENT, has_name=False)
-    assert not failure([*found(PASSED), mutation], is_named=True)
-    # In contrast to other tests of the same run.
-    assert failure([*found(PASSED, SILENT), mutation], is_named=True)
-    assert failure([mutation], is_named=True)
+    mutation = a_record(a_test("p/msg/T", system="ts1"), verdict=SILENT)
+    mutating = replace(NAMED, mutations=1)
+    assert not failure([*found(PASSED), mutation], mutating)
+    # In contrast to other tests of the same run, and to definitions.
+    assert failure([*found(PASSED, SILENT), mutation], mutating)
+    assert failure([*found(PASSED), mutation], NAMED)
+    assert failure([mutation], mutating)
 
 
 @pytest.fixture
@@ -106,26 +110,6 @@ def test_of_all_types_those_that_are_not_judged_are_listed(
         assert capsys.readouterr().out.endswith(LINE + "1 of 2 tests was not judged\n")
 
 
-@pytest.mark.parametrize(
-    ("other", "verdict"),
-    [
-        (a_record(shape="aa"), Passed),
-        (a_record(shape="aa", verdict=KNOWN), Passed),
-        (a_record(shape="bb"), Failed),
-        (a_record(shape=""), Failed),
-        (a_record(shape="aa", verdict=FAILED), Failed),
-        (a_record(shape="aa", verdict=SILENT), NotJudged),
-        (None, NotJudged),
-    ],
-)
-def test_a_dependent_record_has_the_verdict_of_the_other(other, verdict):
-    twin = a_record(a_test("a/msg/Twin"), same_as=a_test().key, shape="aa")
-    records = {} if other is None else {other.test.key: other}
-    assert isinstance(settled(twin, records), verdict)
-    for own in (FAILED, SILENT):
-        assert settled(replace(twin, verdict=own), records) == own
-
-
 @pytest.mark.parametrize("system", ["ts1", "ts2"])
 def test_named_definition_that_no_oracle_reads_is_no_success(tmp_path, capsys, system):
     text = "module p { module msg { struct A { long double a; }; }; };"
@@ -138,14 +122,3 @@ def test_named_definition_that_no_oracle_reads_is_no_success(tmp_path, capsys, s
     assert "1 of 2 tests was not judged, although named, so the run fails\n" in output
     assert main([*call, "--all"]) == 0
     assert capsys.readouterr().out.endswith("1 of 2 tests was not judged\n")
-
-
-def test_golden_plans_of_no_type_that_was_named_are_no_success(tmp_path, capsys):
-    golden = str(tmp_path / "golden")
-    assert main(["golden", "add", "--distro", "lyrical", golden, "std_msgs/msg/Int8"]) == 0
-    call = ["verify", *FEW, "--systems", "ts2", "--golden", golden]
-    assert main([*call, "std_msgs/msg/Int8"]) == 0
-    capsys.readouterr()
-    assert main([*call, "std_msgs/msg/Bool"]) == 1
-    why = "none of them is of a type that was asked for"
-    assert f"not judged: golden plans of {golden}: {why}\n" in capsys.readouterr().out

@@ -12,9 +12,8 @@ from firm_hdl.verify.results.records import MOST_FAILURES, Seconds
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.system import (
-    Recorder,
     Trial,
-    judged,
+    counted,
     kept,
     recorded,
     run_tests,
@@ -82,12 +81,12 @@ def test_the_worst_that_is_known_is_the_verdict(given, verdict):
 def test_the_verdict_that_counts_is_that_of_the_circuit():
     one = a_record(a_test("p/A"), verdict=Failed(("no",)))
     twin = a_record(a_test("p/B"), same_as=one.test.key)
-    names = [(each.what, each.verdict.name) for each in judged([one, twin])]
+    names = [(each.test.title, each.verdict.name) for each in counted([one, twin])]
     suffix = "(kilted, lyrical), ts3, 8-byte bus"
     assert names == [(f"p/A {suffix}", "failed"), (f"p/B {suffix}", "failed")]
 
 
-TESTS = {name: a_test(f"p/{name}") for name in "ABC"}
+TESTS = [a_test(f"p/{name}") for name in "ABC"]
 
 
 def test_records_are_kept_in_a_file_and_are_not_made_again(tmp_path, capsys):
@@ -96,21 +95,24 @@ def test_records_are_kept_in_a_file_and_are_not_made_again(tmp_path, capsys):
     def run(left):
         made.append(list(left))
         # Two at once, in another order than the tests.
-        yield [(key, a_record(TESTS[key]), [f"line of {key}"]) for key in reversed(left)]
+        yield [a_record(test) for test in reversed(left)]
+
+    def lines_of(record):
+        return [f"line of {record.test.type}"]
 
     def again(tests):
-        with ResultsWriter(path, options={}, planned=list(TESTS.values())) as writer:
-            return kept(tests, Recorder(writer), run, label="", unit="thing")
+        with ResultsWriter(path, options={}, planned=TESTS) as writer:
+            found = kept(tests, writer, run, lines_of, label="", unit="thing")
+            assert [record.test for record in found] == tests
 
-    first = {key: TESTS[key] for key in "AB"}
-    assert list(again(first)) == ["A", "B"] and made == [["A", "B"]]
-    assert len(read_results(path).records) == 2
-    assert capsys.readouterr().out == "line of B\nline of A\n"
-    assert list(again(TESTS)) == ["A", "B", "C"] and made == [["A", "B"], ["C"]]
-    assert capsys.readouterr().out == f"2 of 3 things have a result in {path}\nline of C\n"
+    again(TESTS[:2])
+    assert made == [TESTS[:2]] and len(read_results(path).records) == 2
+    assert capsys.readouterr().out == "line of p/B\nline of p/A\n"
+    again(TESTS)
+    assert made == [TESTS[:2], TESTS[2:]]
+    assert capsys.readouterr().out == f"2 of 3 things have a result in {path}\nline of p/C\n"
     # Without a file, all are made.
-    assert list(kept(TESTS, Recorder(), run, label="")) == ["A", "B", "C"]
-    assert made[2:] == [["A", "B", "C"]]
+    assert len(kept(TESTS, None, run, lines_of, label="")) == 3 and made[2:] == [TESTS]
 
 
 @pytest.mark.parametrize(
@@ -135,7 +137,6 @@ def fails_often(context, test):
 
 
 def test_of_many_failures_the_first_are_kept_and_the_others_counted():
-    run = run_tests(fails_often, None, [a_test()], lambda test: "again", lambda record: [], jobs=1)
-    ((((_, record, _),)),) = run
+    ((record,),) = run_tests(fails_often, None, [a_test()], lambda test: "again", jobs=1)
     assert record.failures == (*["no"] * MOST_FAILURES, "and 3 more")
     assert record.command == "again"

@@ -27,8 +27,8 @@ def judged_by(run):
         The number of definitions that both refuse, and the names and failures of those that differ.
     """
     with closing(run.judged(list(run.cases))) as shares:
-        records = {test: record for share in shares for test, record, _ in share}
-    found = [(test, each) for test, record in records.items() for each in record.verdicts]
+        records = [record for share in shares for record in share]
+    found = [(record.test, each) for record in records for each in record.verdicts]
     wrong = [
         (test.type, each.verdict.failures)
         for test, each in found

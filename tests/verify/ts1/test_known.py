@@ -200,6 +200,7 @@ EXAMPLES = (
     idl("idl-twice", "long x;", before=constants("const long N = 3; const long N = 4;")),
     idl("idl-lengths", "long x[-1];"),
     idl("idl-words", "shortvalue; unsignedlong x;"),
+    idl("idl-names-after-arrays", "long x[2], y;"),
     idl("idl-type-scopes", "msg::X x; a::b::c::X y[2];"),
     idl("idl-unsupported", "@optional long x;"),
     idl("idl-lists-of-lists", "L x[3];", before="typedef sequence<long> L;"),

@@ -17,7 +17,6 @@ from firm_hdl.frontend import DISTROS
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import Recorder
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Refused
@@ -39,10 +38,10 @@ def source(tmp_path):
     return str(make_files(tmp_path, FILES) / "src")
 
 
-def run_ts1(request, oracles, recorder=None):
-    """Judge definitions as the command does; return what was judged."""
+def run_ts1(request, oracles):
+    """Judge definitions as the command does; return the records."""
     with Ts1(replace(request, oracles=tuple(oracles), jobs=1)) as system:
-        return system.run(recorder or Recorder())
+        return system.run(None)
 
 
 def judged(request, oracles=(), jobs=1):

@@ -59,7 +59,7 @@ def test_a_golden_plan_may_be_of_any_distribution_that_has_the_same_type(tmp_pat
     assert main([*call, TWIST]) == 1
     out = capsys.readouterr().out
     assert "golden plans: 0 compared, 0 differ\n" in out
-    assert f"not judged: golden plans of {folder}: none of them is of a type that was" in out
+    assert f"not judged: golden plans of {folder}, ts2: none of them is of a type that was" in out
 
 
 def test_the_folder_of_golden_plans_is_an_option_of_the_run_and_of_the_command(tmp_path, capsys):

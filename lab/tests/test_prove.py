@@ -1,8 +1,8 @@
-"""The program ``python -m firm_hdl.equivalence``, which `make prove` runs."""
+"""The program ``python -m lab.prove``, which `make prove` runs."""
 
 from __future__ import annotations
 
-from firm_hdl.equivalence import __main__ as command
+from lab import prove as command
 
 
 def test_both_converters_of_covering_types_of_both_wires_are_proved(monkeypatch):

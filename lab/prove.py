@@ -1,21 +1,28 @@
-"""Types to prove. Together, their converters have every feature of converters.
+"""``python -m lab.prove``: proofs for types whose converters together have every feature.
 
 Embedded types are chosen by the features of their definitions and plans. Definitions of our own
-have features that no embedded type has. A few popular types are added.
+have features that no embedded type has. A few popular types are added. ``firm-hdl prove`` is the
+command for chosen types.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import argparse
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from firm_hdl.arguments import add_bus_bytes, add_jobs
 from firm_hdl.covering.choose import choose, cost, features
+from firm_hdl.equivalence.command import add_timeout, run_proofs
 from firm_hdl.equivalence.converters import ProofTask, both_directions
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
+from firm_hdl.terminal import printable_streams, progress
 
-__all__ = ["DISTROS", "covering_tasks", "write_definitions"]
+__all__ = ["covering_tasks", "main", "write_definitions"]
 
 DISTROS = ("noetic", "lyrical")
 """One distribution for each wire format."""
@@ -94,3 +101,22 @@ def _chosen(distro: str, bus_bytes: int) -> list[str]:
         types[name] = features(message, plan)
         costs[name] = cost(plan)
     return [chosen.name for chosen in choose(types, costs)]
+
+
+@printable_streams()
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the proofs; return 0 if all succeed."""
+    parser = argparse.ArgumentParser(prog="python -m lab.prove", description=__doc__)
+    add_bus_bytes(parser)
+    add_jobs(parser)
+    add_timeout(parser)
+    given = parser.parse_args(arguments)
+    with progress("prove"), tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
+        write_definitions(Path(folder))
+        timeout = float(given.timeout)
+        tasks = covering_tasks(Path(folder), bus_bytes=given.bus_bytes, timeout=timeout)
+        return run_proofs(tasks, given.jobs, with_summary=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.frontend.productions import productions
+from firm_hdl.covering.choose import productions
 
 
 def test_lines_of_a_message_are_named_by_rule_and_parts():

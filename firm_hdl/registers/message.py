@@ -1,0 +1,335 @@
+"""A message as registers: its fields of fixed size as a block of words, laid out as a struct of C.
+
+A value of n bytes is at a multiple of n bytes, and the lowest byte comes first. So a processor
+copies words, and has the struct. What has no fixed size, such as a string, is left out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from amaranth.lib import data
+
+from firm_hdl.gateware.record_layout import record_layout
+from firm_hdl.model import Array, FieldType, Message, Primitive
+from firm_hdl.names.identifiers import flat_names, identifier
+from firm_hdl.plan import Direction, Plan
+from firm_hdl.registers.table import WORD_BYTES, Field, Kind, Register, RegisterMap
+
+__all__ = ["ID", "MAX_BYTES", "MESSAGE_ADDRESS", "VERSION", "Item", "MessageMap", "message_map"]
+
+ID = int.from_bytes(b"FIRM", "little")
+VERSION = (1, 0)
+"""Of the registers before the message: a new minor one adds some."""
+
+MESSAGE_ADDRESS = 0x40
+MAX_BYTES = 4096
+"""Largest block of a message. Each of its bits is a register, and is read through a multiplexer."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Item:
+    """A value of the message.
+
+    Attributes
+    ----------
+    path : tuple of str and int
+        Names of fields and indexes of arrays.
+    type : Primitive
+    address : int
+        In bytes from the begin of the block.
+    bit : int
+        Its lowest bit in the record of :func:`.record_layout`.
+    """
+
+    path: tuple[str | int, ...]
+    type: Primitive
+    address: int
+    bit: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MessageMap:
+    """The registers of a message type.
+
+    Attributes
+    ----------
+    name : str
+        Of the type, as a word of C; the same for both directions.
+    message : Message
+    direction : "deserializer" or "serializer"
+        ``deserializer``: software reads messages that come.
+    items : tuple of Item
+    shape : StructLayout
+        The record, with the fields that the registers have.
+    size : int
+        Bytes of the block, and of the struct.
+    pieces : dict of str to tuple of int
+        By the name of a field of the table: the bits of the record that it has.
+    table : RegisterMap
+    """
+
+    name: str
+    message: Message
+    direction: Direction
+    items: tuple[Item, ...]
+    shape: data.StructLayout
+    size: int
+    pieces: dict[str, tuple[int, int]]
+    table: RegisterMap
+
+
+def message_map(message: Message, plan: Plan, direction: Direction) -> MessageMap:
+    """Lay out the registers of a message type.
+
+    The table has the name of the type, with ``_rx`` if software reads messages, else ``_tx``.
+
+    Raises
+    ------
+    ValueError
+        If the message has no fields of fixed size, or more than 4,096 bytes of them.
+    """
+    shape = record_layout(message, wire=plan.wire)
+    size, _ = size_of(message, shape)
+    if size > MAX_BYTES:
+        raise ValueError(
+            f"Fields of fixed size of {message.name} take {size} bytes, and registers have at most "
+            f"{MAX_BYTES}"
+        )
+    items = tuple(_items(message, shape, (), 0, 0))
+    if not items:
+        raise ValueError(f"Message {message.name} has no values for registers")
+    words, pieces = _words(items, direction, -(-size // WORD_BYTES))
+    lines = [f"{message.name} {plan.wire} {direction} {size}"]
+    lines += [f"{item.path} {item.type} {item.address}" for item in items]
+    digest = hashlib.sha256("\n".join(lines).encode()).digest()
+    common = _common(direction, int.from_bytes(digest[:8], "little"))
+    what = {
+        "deserializer": "messages that come as packets, for software to read",
+        "serializer": "messages that software writes, and that leave as packets",
+    }[direction]
+    name = identifier(message.name)
+    end = {"deserializer": "rx", "serializer": "tx"}[direction]
+    table = RegisterMap(
+        name=f"{name}_{end}", registers=(*common, *words), meaning=f"{message.name}: {what}."
+    )
+    return MessageMap(
+        name=name,
+        message=message,
+        direction=direction,
+        items=items,
+        shape=shape,
+        size=size,
+        pieces=pieces,
+        table=table,
+    )
+
+
+def size_of(kind: FieldType, shape: Any) -> tuple[int, int]:
+    """Return bytes and alignment of a value in C; 0 and 1 of a message without values."""
+    match kind:
+        case Primitive(bytes=count):
+            return count, count
+        case Array(element=element, count=count):
+            size, alignment = size_of(element, shape.elem_shape)
+            return size * count, alignment
+        case Message():
+            end, most = 0, 1
+            for _, inner, part in members_of(kind, shape):
+                size, alignment = size_of(inner, part)
+                end = -(-end // alignment) * alignment + size
+                most = max(most, alignment)
+            return -(-end // most) * most, most
+    raise AssertionError(kind)
+
+
+def members_of(message: Message, shape: Any) -> Iterator[tuple[str, FieldType, Any]]:
+    """Yield name, type and shape of the members that the registers have, in order."""
+    kinds: dict[str, FieldType] = {field.name: field.type for field in message.fields}
+    for name, part in shape.members.items():
+        # A message without fields has a byte or a trigger, which software does not need.
+        if name in kinds and size_of(kinds[name], part)[0]:
+            yield name, kinds[name], part
+
+
+def _items(
+    kind: FieldType, shape: Any, path: tuple[str | int, ...], address: int, bit: int
+) -> Iterator[Item]:
+    match kind:
+        case Primitive():
+            yield Item(path=path, type=kind, address=address, bit=bit)
+        case Array(element=element, count=count):
+            size, _ = size_of(element, shape.elem_shape)
+            for index in range(count if size else 0):
+                here = bit + shape[index].offset
+                place = address + size * index
+                yield from _items(element, shape.elem_shape, (*path, index), place, here)
+        case Message():
+            for name, inner, part in members_of(kind, shape):
+                size, alignment = size_of(inner, part)
+                address = -(-address // alignment) * alignment
+                here = bit + shape[name].offset
+                yield from _items(inner, part, (*path, name), address, here)
+                address += size
+
+
+def _words(
+    items: tuple[Item, ...], direction: Direction, count: int
+) -> tuple[list[Register], dict[str, tuple[int, int]]]:
+    """Return the registers of the block, and the bits of the record that each field has."""
+    kind: Kind = "setting" if direction == "serializer" else "status"
+    names = flat_names(_spelled(item) for item in items)
+    # By word: name, lowest bit in the word, and bits of the record.
+    found: dict[int, list[tuple[str, int, int, int, str]]] = {}
+    for item in items:
+        name = names[_spelled(item)]
+        what = f"{_dotted(item)}: {item.type}"
+        bits = item.type.bits
+        for part in range(-(-bits // 32)):
+            half = f"{name}_{('low', 'high')[part]}" if bits > 32 else name
+            word, byte = divmod(item.address + WORD_BYTES * part, WORD_BYTES)
+            place = (half, 8 * byte, item.bit + 32 * part, min(bits, 32), what)
+            found.setdefault(word, []).append(place)
+    registers, pieces = [], {}
+    unused: Kind = "unused" if direction == "serializer" else "constant"
+    padding = Field(name="padding", low=0, bits=32, kind=unused, meaning="No value has it.")
+    for word in range(count):
+        places = found.get(word, [])
+        alone = places[0][0] if len(places) == 1 else f"message_word_{word}"
+        fields = [] if places else [padding]
+        for name, low, bit, bits, what in places:
+            full = name if len(places) == 1 else f"{alone}_{name}"
+            pieces[full] = (bit, bits)
+            fields.append(Field(name=name, low=low, bits=bits, kind=kind, meaning=f"{what}."))
+        registers.append(
+            Register(
+                name=alone,
+                address=MESSAGE_ADDRESS + WORD_BYTES * word,
+                fields=tuple(fields),
+                meaning=fields[0].meaning if len(fields) == 1 else "Several values.",
+            )
+        )
+    return registers, pieces
+
+
+def _spelled(item: Item) -> tuple[str, ...]:
+    return "message", *map(str, item.path)
+
+
+def _dotted(item: Item) -> str:
+    parts = [f"[{part}]" if isinstance(part, int) else f".{part}" for part in item.path]
+    return "".join(parts).removeprefix(".")
+
+
+def _common(direction: Direction, fingerprint: int) -> list[Register]:
+    """Return the registers before the message."""
+    comes = direction == "deserializer"
+
+    def constant(name: str, low: int, bits: int, value: int, meaning: str) -> Field:
+        return Field(name=name, low=low, bits=bits, kind="constant", meaning=meaning, reset=value)
+
+    def word(name: str, address: int, meaning: str, *fields: Field) -> Register:
+        return Register(name=name, address=address, fields=fields, meaning=meaning)
+
+    def counter(name: str, address: int, meaning: str) -> Register:
+        text = f"{meaning} As it was at the last latch; it stops at its largest value."
+        only = Field(name=name, low=0, bits=32, kind="status", meaning=text)
+        return word(name, address, text, only)
+
+    def alone(name: str, address: int, value: int, meaning: str) -> Register:
+        return word(name, address, meaning, constant(name, 0, 32, value, meaning))
+
+    low, high = fingerprint & 0xFFFF_FFFF, fingerprint >> 32
+    commit = (
+        "Show the newest message in the words."
+        if comes
+        else "Send the words as a message, unless the one before is still busy."
+    )
+    state = (
+        (
+            Field(
+                name="new",
+                low=0,
+                bits=1,
+                kind="status",
+                meaning="A good message came after the last commit.",
+            ),
+            Field(name="shown", low=1, bits=1, kind="status", meaning="The words are a message."),
+        )
+        if comes
+        else (
+            Field(
+                name="busy",
+                low=0,
+                bits=1,
+                kind="status",
+                meaning="The serializer takes the message of the last commit.",
+            ),
+        )
+    )
+    code = "Status of the last packet; 0 is OK."
+    event = "A good message came." if comes else "A message was sent."
+    error = "A packet had an error."
+    bits = {"message": (0, event), "error": (1, error)}
+    skipped = (
+        "Good messages that a newer one replaced before a commit."
+        if comes
+        else "Commits while busy, which did nothing."
+    )
+    return [
+        alone("id", 0x00, ID, "The text FIRM."),
+        word(
+            "version",
+            0x04,
+            "Of the registers before the message.",
+            constant("minor", 0, 16, VERSION[1], "Raised by what only adds registers."),
+            constant("major", 16, 16, VERSION[0], "Raised by all other changes."),
+        ),
+        alone("fingerprint_low", 0x08, low, "Of type, wire format, direction and layout."),
+        alone("fingerprint_high", 0x0C, high, "Of type, wire format, direction and layout."),
+        word(
+            "control",
+            0x10,
+            "A written 1 acts once.",
+            Field(name="commit", low=0, bits=1, kind="pulse", meaning=commit),
+            Field(name="latch", low=1, bits=1, kind="pulse", meaning="Latch all counters."),
+            Field(
+                name="reset",
+                low=2,
+                bits=1,
+                kind="pulse",
+                meaning="Reset all registers. Packets under way are not cut.",
+            ),
+        ),
+        word(
+            "status",
+            0x14,
+            "The state of the converter.",
+            *state,
+            Field(name="code", low=8, bits=8, kind="status", meaning=code),
+        ),
+        word(
+            "interrupt_enable",
+            0x18,
+            "Events that raise the interrupt.",
+            *(
+                Field(name=name, low=low, bits=1, kind="setting", meaning=text)
+                for name, (low, text) in bits.items()
+            ),
+        ),
+        word(
+            "interrupt",
+            0x1C,
+            "Events; a written 1 clears one.",
+            *(
+                Field(name=name, low=low, bits=1, kind="event", meaning=text)
+                for name, (low, text) in bits.items()
+            ),
+        ),
+        counter("messages", 0x20, "Good messages." if comes else "Messages sent."),
+        counter("errors", 0x24, "Packets with an error."),
+        counter("skipped", 0x28, skipped),
+    ]

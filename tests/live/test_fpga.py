@@ -1,0 +1,65 @@
+"""A node of ROS 2 at the pins of a PHY, in Verilator; Linux and rclpy are its peers."""
+
+from __future__ import annotations
+
+import subprocess
+
+import pytest
+
+from tests.live import test_participant
+from tests.live.boards import build_board, make_tap, ping
+from tests.live.peer import Peer
+
+pytestmark = pytest.mark.live
+
+BOARD = "192.168.51.50"
+LINK = f"{{kind: rtps, ethernet: gmii, mac: '02:00:00:00:00:51', address: {BOARD}/24}}"
+# A second of the board is about a minute of the simulation, so that nothing here waits for one.
+NODE = "\n".join(
+    {"clock_mhz": "clock_mhz: 25", "link": f"link: {LINK}"}.get(line.partition(":")[0], line)
+    for line in test_participant.NODE.splitlines()
+)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def board(tmp_path_factory):
+    """Build the node, and start it behind a TAP device; its process ends with the tests."""
+    make_tap("tap1", "192.168.51.1/24")
+    program = build_board(tmp_path_factory.mktemp("fpga"), "ethernet", "mirror", NODE)
+    process = subprocess.Popen(
+        [program, "tap1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "ready\n"
+    yield
+    process.kill()
+    # It would tell of frames that are not valid.
+    assert process.communicate()[1] == ""
+
+
+def test_it_answers_ping():
+    ping(BOARD, 56, 1472)
+
+
+def test_it_is_in_the_graph():
+    wanted = {"node": "mirror", "namespace": "/fpga", "publishers": 4, "topics": ["/text_out"]}
+    with Peer("kilted", "graph", own="watcher", patience=60, **wanted) as peer:
+        result = peer.result(90)
+    assert ["mirror", "/fpga"] in result["nodes"] and result["owners"] == [["mirror", "/fpga"]]
+    assert ["/text_in", ["std_msgs/msg/String"]] in result["subscriptions"]
+    assert [name for name, _ in result["services"]] == ["/mode"]
+
+
+def test_messages_come_back_in_order():
+    options = {"count": 200, "period": 0.1, "depth": 200}
+    topics = [
+        {"type": kind, "to": f"/{name}_in", "back": f"/{name}_out", **options}
+        for kind, name in (("string", "text"), ("imu", "imu"), ("twist", "twist"), ("scan", "scan"))
+    ]
+    with Peer("kilted", "trip", topics=topics, linger=60) as peer:
+        assert peer.next(120) == {"begins": True}
+        assert peer.result(300)["numbers"] == [list(range(200))] * 4
+
+
+def test_it_answers_calls():
+    with Peer("kilted", "call", name="/mode", count=50) as peer:
+        assert peer.result(120)["answers"] == [[bool(n & 1), "ok"] for n in range(50)]

@@ -1,0 +1,280 @@
+"""A cocotb bench: cocotbext-axi's master on both converters with registers, with random pauses.
+
+The Python of a simulator runs this module; :mod:`tests.registers.test_verilog` starts it. What has
+to be in the words follows from `struct` of Python, and what has to be in packets from rosbags.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import struct
+from itertools import pairwise
+from pathlib import Path
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, Combine, RisingEdge, with_timeout
+from cocotbext.axi import (
+    AxiLiteBus,
+    AxiLiteMaster,
+    AxiResp,
+    AxiStreamBus,
+    AxiStreamFrame,
+    AxiStreamSink,
+    AxiStreamSource,
+)
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+ROUNDS = int(os.environ["ROUNDS"])
+STORE = get_typestore(Stores.ROS2_JAZZY)
+STORE.register(
+    get_types_from_msg(Path(os.environ["DEFINITION"]).read_text(), "test_msgs/msg/Mixed")
+)
+Mixed = STORE.types["test_msgs/msg/Mixed"]
+# The struct as C lays it out. `name` is left out.
+FORM = "@BdBh3B2fq0d"
+SIZE = struct.calcsize(FORM)
+ID, FINGERPRINT, CONTROL, STATUS, ENABLE, EVENTS, MESSAGES = 0, 8, 0x10, 0x14, 0x18, 0x1C, 0x20
+WORDS = 0x40
+END = WORDS + -(-SIZE // 4) * 4
+COMMIT, LATCH, RESET = 1, 2, 4
+
+
+def random_values(chosen):
+    return (
+        chosen.getrandbits(8),
+        chosen.uniform(-1e9, 1e9),
+        chosen.getrandbits(1),
+        chosen.randint(-(2**15), 2**15 - 1),
+        *chosen.randbytes(3),
+        *struct.unpack("2f", struct.pack("2f", chosen.random(), -chosen.random())),
+        chosen.randint(-(2**63), 2**63 - 1),
+    )
+
+
+def packet(values, name=""):
+    import numpy as np
+
+    a, b, c, d, *rest = values
+    message = Mixed(
+        a=a,
+        b=b,
+        name=name,
+        c=bool(c),
+        d=d,
+        e=np.array(rest[:3], dtype=np.uint8),
+        f=np.array(rest[3:5], dtype=np.float32),
+        g=rest[5],
+    )
+    return bytes(STORE.serialize_cdr(message, "test_msgs/msg/Mixed"))
+
+
+def pauses(seed):
+    chosen = random.Random(seed)
+    while True:
+        yield chosen.random() < 0.4
+
+
+async def begin(dut):
+    cocotb.start_soon(Clock(dut.aclk, 10, "ns").start())
+    reset = {"reset": dut.aresetn, "reset_active_level": False}
+    masters = {}
+    for number, side in enumerate(("rx", "tx")):
+        bus = AxiLiteBus.from_prefix(dut, f"{side}_s_axi")
+        masters[side] = master = AxiLiteMaster(bus, dut.aclk, **reset)
+        write, read = master.write_if, master.read_if
+        channels = [write.aw_channel, write.w_channel, write.b_channel]
+        channels += [read.ar_channel, read.r_channel]
+        for each, channel in enumerate(channels):
+            channel.set_pause_generator(pauses(10 * number + each))
+    source = AxiStreamSource(AxiStreamBus.from_prefix(dut, "rx_s_axis"), dut.aclk, **reset)
+    sink = AxiStreamSink(AxiStreamBus.from_prefix(dut, "tx_m_axis"), dut.aclk, **reset)
+    source.set_pause_generator(pauses(30))
+    sink.set_pause_generator(pauses(31))
+    dut.aresetn.value = 0
+    await ClockCycles(dut.aclk, 3)
+    assert not any(
+        getattr(dut, f"{side}_s_axi_{name}").value
+        for side in ("rx", "tx")
+        for name in ("bvalid", "rvalid")
+    )
+    dut.aresetn.value = 1
+    await RisingEdge(dut.aclk)
+    return masters["rx"], masters["tx"], source, sink
+
+
+async def word(master, address):
+    got = await with_timeout(master.read(address, 4), 100, "us")
+    assert got.resp == AxiResp.OKAY, hex(address)
+    return int.from_bytes(got.data, "little")
+
+
+async def put(master, address, value):
+    got = await with_timeout(master.write(address, value.to_bytes(4, "little")), 100, "us")
+    assert got.resp == AxiResp.OKAY, hex(address)
+
+
+async def counters(master):
+    await put(master, CONTROL, LATCH)
+    return [await word(master, MESSAGES + 4 * k) for k in range(3)]
+
+
+@cocotb.test()
+async def any_transfers(dut):
+    """Bytes that were written are read; wrong addresses fail and change nothing."""
+    _, tx, _, _ = await begin(dut)
+    chosen = random.Random(1)
+    held = bytearray(END)
+    # Bits that can be written: of a bool the lowest one, and none of the padding.
+    bits = bytearray(END)
+    bits[WORDS : WORDS + SIZE] = struct.pack(
+        FORM,
+        255,
+        struct.unpack("d", b"\xff" * 8)[0],
+        1,
+        -1,
+        *b"\xff" * 3,
+        *struct.unpack("2f", b"\xff" * 8),
+        -1,
+    )
+    bits[WORDS + 8 : WORDS + 16] = b"\xff" * 8
+    bits[WORDS + 24 : WORDS + 32] = b"\xff" * 8
+    bits[ENABLE] = 3
+    for address, value in ((ID, b"FIRM"), (6, b"\1\0")):
+        held[address : address + len(value)] = value
+    held[FINGERPRINT : FINGERPRINT + 8] = int(os.environ["FINGERPRINT"]).to_bytes(8, "little")
+    free = {ENABLE // 4, EVENTS // 4, *range(WORDS // 4, END // 4)}
+    known = {*range((MESSAGES + 12) // 4), *range(WORDS // 4, END // 4)}
+    for number in range(ROUNDS):
+        near = chosen.random() < 0.9
+        address = chosen.randrange(END + 8) if near else chosen.randrange(4096)
+        count = chosen.randint(1, 4 - address % 4)
+        place, index = address // 4, slice(address, address + count)
+        if chosen.random() < 0.5:
+            data = chosen.randbytes(count)
+            if place == CONTROL // 4:
+                # What would send a message is no subject here.
+                data = bytes(count)
+            got = await with_timeout(tx.write(address, data), 100, "us")
+            good = place in free or place == CONTROL // 4
+            if place in free:
+                kept = zip(bits[index], data, strict=True)
+                held[index] = bytes(mask & value for mask, value in kept)
+        else:
+            got = await with_timeout(tx.read(address, count), 100, "us")
+            good = place in known
+            assert got.data == (bytes(held[index]) if good else bytes(count)), (
+                number,
+                hex(address),
+            )
+        assert got.resp == (AxiResp.OKAY if good else AxiResp.SLVERR), (number, hex(address))
+
+
+@cocotb.test()
+async def messages_are_sent(dut):
+    _, tx, _, sink = await begin(dut)
+    chosen, sent = random.Random(2), []
+    await put(tx, ENABLE, 1)
+    for _ in range(ROUNDS // 20):
+        values = random_values(chosen)
+        while await word(tx, STATUS) & 1:
+            pass
+        # In any pieces and order; words under way do not change the message of the commit before.
+        data = struct.pack(FORM, *values)
+        cuts = sorted({0, SIZE, *(chosen.randrange(SIZE) for _ in range(5))})
+        spans = list(pairwise(cuts))
+        chosen.shuffle(spans)
+        for first, last in spans:
+            await tx.write(WORDS + first, data[first:last])
+        await put(tx, CONTROL, COMMIT)
+        sent.append(packet(values))
+    for expected in sent:
+        frame = await with_timeout(sink.recv(), 100, "us")
+        assert bytes(frame.tdata) == expected
+    assert dut.tx_irq.value == 1
+    await put(tx, EVENTS, 1)
+    await ClockCycles(dut.aclk, 3)
+    assert dut.tx_irq.value == 0
+    # The sink is full, so a commit finds the serializer busy.
+    sink.clear_pause_generator()
+    sink.pause = True
+    busy = 0
+    for _ in range(12):
+        busy += await word(tx, STATUS) & 1
+        await put(tx, CONTROL, COMMIT)
+    assert busy > 1
+    done, errors, skipped = await counters(tx)
+    sink.pause = False
+    for _ in range(12 - skipped):
+        assert bytes((await with_timeout(sink.recv(), 100, "us")).tdata) == sent[-1]
+    assert skipped >= busy and errors == 0 and done <= len(sent) + 12 - skipped
+    await ClockCycles(dut.aclk, 50)
+    assert sink.empty()
+    # A reset clears registers, and messages go on.
+    await put(tx, CONTROL, RESET)
+    assert await counters(tx) == [0, 0, 0]
+    assert await word(tx, ENABLE) == await word(tx, EVENTS) == await word(tx, WORDS) == 0
+    await put(tx, CONTROL, COMMIT)
+    zeros = packet(struct.unpack(FORM, bytes(SIZE)))
+    assert bytes((await with_timeout(sink.recv(), 100, "us")).tdata) == zeros
+    assert await counters(tx) == [1, 0, 0]
+
+
+@cocotb.test()
+async def messages_are_shown(dut):
+    rx, _, source, _ = await begin(dut)
+    chosen = random.Random(3)
+
+    async def send(data):
+        await source.send(AxiStreamFrame(data))
+        await with_timeout(source.wait(), 100, "us")
+        await ClockCycles(dut.aclk, 20)
+
+    async def shown():
+        got = await with_timeout(rx.read(WORDS, END - WORDS), 100, "us")
+        assert got.resp == AxiResp.OKAY
+        return bytes(got.data)[:SIZE]
+
+    assert await word(rx, STATUS) == 0
+    await put(rx, ENABLE, 2)
+    good = skipped = bad = 0
+    last, newest, is_new = bytes(SIZE), bytes(SIZE), False
+    for _ in range(ROUNDS // 20):
+        choice = chosen.random()
+        values = random_values(chosen)
+        data = packet(values, "x" * chosen.randrange(20))
+        if choice < 0.2:
+            await send(data[: chosen.randrange(1, len(data) - 1)])
+            bad += 1
+            assert dut.rx_irq.value == 1
+            await put(rx, EVENTS, 3)
+            assert await word(rx, STATUS) >> 8 != 0
+        else:
+            await send(data)
+            good, skipped = good + 1, skipped + is_new
+            newest, is_new = struct.pack(FORM, *values), True
+            assert await word(rx, STATUS) >> 8 == 0
+            assert await word(rx, EVENTS) == 1
+            assert dut.rx_irq.value == 0
+        assert await shown() == last
+        assert await word(rx, STATUS) & 1 == is_new
+        if chosen.random() < 0.6:
+            # One read at once with the commit and after it: words of one message, old or new.
+            await put(rx, CONTROL, COMMIT)
+            last, is_new = newest, False
+            assert await shown() == last
+    assert await counters(rx) == [good, bad, skipped]
+    for address in (WORDS, STATUS, ID, MESSAGES):
+        got = await rx.write(address, b"\xff" * 4)
+        assert got.resp == AxiResp.SLVERR
+    assert await shown() == last
+    # Reads and writes at the same time do not disturb each other.
+    reads = [cocotb.start_soon(word(rx, ID)) for _ in range(20)]
+    writes = [cocotb.start_soon(put(rx, ENABLE, number % 4)) for number in range(20)]
+    await with_timeout(Combine(*reads, *writes), 100, "us")
+    assert {each.result() for each in reads} == {int.from_bytes(b"FIRM", "little")}
+    await put(rx, CONTROL, RESET)
+    assert await counters(rx) == [0, 0, 0]
+    assert await word(rx, STATUS) == await word(rx, ENABLE) == 0
+    assert await shown() == bytes(SIZE)
