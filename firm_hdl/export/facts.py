@@ -61,11 +61,11 @@ def contract(plan: Plan, recovery: Mapping[str, int]) -> Iterator[str]:
             "are not checked. The serializer writes 00 01 00 00."
         )
         yield "Up to three bytes after a message are dropped, and the status is OK."
+        yield "Padding may have any value in a packet that comes in. The serializer writes zeros."
     else:
         yield "All numbers are little-endian, and no byte may follow a message."
     if any(length.nul for length in plan.lengths.values()):
         yield "A string whose length on the wire is 0 is taken for the empty string."
-    yield "Padding may have any value in a packet that comes in. The serializer writes zeros."
     yield (
         "A deserializer gives the fields as their bytes arrive, before it knows the status. So "
         "keep what you do with them until the status is OK, and discard it otherwise."

@@ -48,9 +48,9 @@ _MOST_NAME = 300
 
 _OURS = (
     r"((vhdl|systemverilog)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|\w+_(cdr|ros1)_\d+\w*_pkg|"
-    r"bench_files|bitstream|datasheet|files|layout|link|pins|plan|report|run_ghdl|run_iverilog|"
+    r"README|bench_files|bitstream|datasheet|files|layout|link|pins|plan|report|run_ghdl|run_iverilog|"
     r"stimuli|summary|top|vivado|vunit_run|waivers)"
-    r"\.(bin|bit|core|f|h|html|lpf|pcf|py|rdl|sh|sv|svg|tcl|txt|v|veo|vhd|vlt|yaml))"
+    r"\.(bin|bit|core|f|h|html|lpf|md|pcf|py|rdl|sh|sv|svg|tcl|txt|v|veo|vhd|vlt|yaml))"
 )
 """Names of the files that firm-hdl writes, and deletes if they are outdated."""
 

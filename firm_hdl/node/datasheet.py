@@ -15,8 +15,8 @@ from firm_hdl.export.datasheet import how_text, render, size_text, sums_of
 from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
 from firm_hdl.export.datasheet.steps import plan_figure
-from firm_hdl.export.facts import definitions_of
 from firm_hdl.export.datasheet.waves import waves_of
+from firm_hdl.export.facts import definitions_of
 from firm_hdl.export.vhdl.wrapper import instance
 from firm_hdl.node.description import Description, Store
 from firm_hdl.node.frame import HEADER
