@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.export import registers, systemverilog, verilog, vhdl, vivado_ip
+from firm_hdl.export import readme, registers, systemverilog, verilog, vhdl, vivado_ip
 from firm_hdl.export.backend import BuildError, Converters
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.manifest import (
@@ -270,5 +270,6 @@ def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dic
         languages = ("VHDL", "Verilog", "SystemVerilog")
         instances = {language: shown[language].instances for language in languages}
         outputs["documents"] = datasheet.write(converters, sections, instances)
+    outputs["readme"] = readme.write(converters, sections)
     files = {name: text for output in outputs.values() for name, text in output.files.items()}
     return files, manifest_of(converters.inputs, files, sections)

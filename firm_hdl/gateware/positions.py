@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.plan import Plan
 from firm_hdl.program import align_addend
 from firm_hdl.timing.rings import ring_beats
@@ -17,6 +18,7 @@ __all__ = [
     "any_of",
     "beat_layout",
     "constant_low_lane_bits",
+    "named",
     "pick",
     "rotate",
     "sum_of_three",
@@ -94,6 +96,13 @@ def beat_layout(plan: Plan) -> data.StructLayout:
             "valid": 1,
         }
     )
+
+
+def named(m: Module, name: str, value: Value, remark: str = "") -> Signal:
+    """Give a value a name in the circuit's text, and perhaps a comment beside the name."""
+    signal = Signal(len(value), name=name, attrs={REMARK: remark} if remark else None)
+    m.d.comb += signal.eq(value)
+    return signal
 
 
 def align_up(
@@ -215,9 +224,12 @@ def constant_low_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, i
     return lanes[0] % common, common.bit_length() - 1
 
 
-def sum_of_three(a: Value, b: Value, c: Value) -> Value:
-    """Return a sum modulo `2 ** len(a)` with one carry chain; `b` and `c` are sign-extended."""
+def sum_of_three(m: Module, name: str, a: Value, b: Value, c: Value) -> Value:
+    """Return a sum modulo `2 ** len(a)` with one carry chain; `b` and `c` are sign-extended.
+
+    The sum of three bits at each place is a bit at this place and a carry to the next one.
+    """
     width = len(a)
     b, c = (Cat(x, x[-1].replicate(width))[:width] for x in (b, c))
-    carry = (a & b) | (a & c) | (b & c)
-    return (a ^ b ^ c) + Cat(Const(0, 1), carry[:-1])
+    carry = named(m, f"{name}_carries", ((a & b) | (a & c) | (b & c))[:-1])
+    return named(m, f"{name}_without_carries", a ^ b ^ c) + Cat(Const(0, 1), carry)

@@ -250,7 +250,7 @@ class ModuleWriter(Writer):
         size = max(map(len, ways), default=0)
         for index, (port, way) in enumerate(zip(ports, ways, strict=True)):
             end = "" if index == len(ports) - 1 else ","
-            yield f"  {way:<{size}} {port.outer.name}{end}{self.remark(port.wire)}"
+            yield f"  {way:<{size}} {port.outer.name}{end}{self.remark(port.wire, layout=True)}"
         if ports:
             yield ");"
 
@@ -272,7 +272,7 @@ class ModuleWriter(Writer):
                     start = f" = {literal(bits)}"
                 kind = "reg" if role == "register" else "wire"
                 text = f"{kind} {size}{each.declared.name}{start};"
-                yield f"  {text}{self.remark(each.wire)}"
+                yield f"  {text}{self.remark(each.wire, layout=role == 'register')}"
         for memory in self.memories:
             yield ""
             counter = self.names.scope.give(f"{memory.name}_at")

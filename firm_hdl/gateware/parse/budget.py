@@ -6,7 +6,7 @@ from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.positions import any_of, pick
+from firm_hdl.gateware.positions import any_of, named, pick
 from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Budget"]
@@ -137,8 +137,8 @@ class Budget(wiring.Component):
             return Const(0, 1)
         target = Signal(width, name=name, reset_less=True)
         total: Value = Const(0, width)
-        for terms in places:
-            total = pick(terms, width) + total
+        for place, terms in enumerate(places):
+            total = named(m, f"{name}_at_{place}", pick(terms, width)) + total
         m.d.sync += target.eq(total - less)
         return target
 

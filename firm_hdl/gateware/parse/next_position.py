@@ -10,7 +10,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import StepLength
-from firm_hdl.gateware.positions import Ring, any_of, pick
+from firm_hdl.gateware.positions import Ring, any_of, named, pick
 from firm_hdl.program import (
     DeserializerProgram,
     DeserializerState,
@@ -117,8 +117,13 @@ def next_positions(
                 flow.register(f"again_{level}", 1, repeats) if bus >= 8 else flow.select(1, repeats)
             )
             taken = at_end & ~flow.levels[level].last
-            exits.append(way(f"again_{level}", free & taken, again))
+            if not isinstance(free, Const):
+                taken = taken & free
+            taken = named(m, f"repeats_{level}", taken)
+            exits.append(way(f"again_{level}", taken, again))
             free = free & ~taken
+    if not isinstance(free, Const):
+        free = named(m, "leaves_all_loops", free)
     exits.append(way("exit", free, attrgetter("exit")))
     bodies = [way("body", Const(1, 1), attrgetter("body_start"))]
     over_rest, after_rest = _over_rests(m, program, flow, length, begins_run)
@@ -181,11 +186,15 @@ def _over_rests(
         shift = counted.item_bytes.bit_length() - 1
         rests.append((taken, Value.cast(entry[counted.rest]) << shift))
         columns.setdefault(counted.next_last_at(to), []).append(taken)
-    total = pick(sizes, len(over_rest)) + pick(rests, len(over_rest))
+    total = named(m, "begun_size", pick(sizes, len(over_rest))) + named(
+        m, "begun_rest", pick(rests, len(over_rest))
+    )
     with m.If(begins_run):
         m.d.sync += over_rest.eq(total)
     cases = [(any_of(on), Value.cast(entry[name])) for name, on in columns.items()]
-    return over_rest, cases[0][1] if len(cases) == 1 else pick(cases, Ring(plan).bits)
+    if len(cases) == 1:
+        return over_rest, cases[0][1]
+    return over_rest, named(m, "last_at_after_items", pick(cases, Ring(plan).bits))
 
 
 def _exits_of_runs(

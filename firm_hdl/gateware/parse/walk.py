@@ -11,7 +11,7 @@ from firm_hdl.gateware.flow import Flow, exceeds
 from firm_hdl.gateware.parse.byte_flags import ByteFlags
 from firm_hdl.gateware.parse.lengths import length_of_step
 from firm_hdl.gateware.parse.next_position import next_positions
-from firm_hdl.gateware.positions import Ring, align_up, any_of
+from firm_hdl.gateware.positions import Ring, align_up, any_of, named
 from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Findings", "Walk"]
@@ -99,6 +99,8 @@ class Walk:
         of the state are those of the state after it.
     step_end : Signal(position)
         First byte after the state's map or word.
+    not_last_at : Signal(position)
+        `-1 - last_at`.
     left : Signal(position)
         Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
     present : Signal(1)
@@ -141,6 +143,7 @@ class Walk:
 
         # The length is looked up at a register, so the read of the table starts with the cycle.
         self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
+        self.not_last_at = named(m, "not_last_at", ~self.last_at, "-1 - last_at")
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present = Signal(name="present")
         self.exits_always, self.done = Signal(name="exits_always"), Signal(name="done")
@@ -151,7 +154,7 @@ class Walk:
         m.d.comb += [
             self.step_end.eq(self.last_at + 1),
             # limit - last_at - 1.
-            self.left.eq(arrival.limit + ~self.last_at),
+            self.left.eq(arrival.limit + self.not_last_at),
             self.present.eq(~self.left[-1]),
             self.exits_always.eq(self.begins_nothing | (self.is_words & flow.words.last)),
             self.done.eq(
@@ -206,7 +209,7 @@ class Walk:
         return Findings(
             header=header,
             # The string's last byte is in the buffer, even if later bytes of the state are not.
-            nul=wrong_nul & (self.present | (~within[-1] & within.any())),
+            nul=named(m, "nul_error", wrong_nul & (self.present | (~within[-1] & within.any()))),
             cut=cut,
             trailing=trailing,
             over=(self.begins_run | self.begins_loop) & self.length.over,
@@ -252,7 +255,7 @@ class Walk:
     def _take_rest(self, issue: Value) -> None:
         """Store the rest of a run that begins; clear it after the state that takes it."""
         m, length = self.m, self.length
-        good = ~self.bad & ~length.over
+        good = named(m, "length_accepted", ~self.bad & ~length.over)
         is_string = self.flow.on(lambda state: state.begins_string)
         with m.If(issue):
             with m.If(self.ends_packet):
@@ -293,7 +296,8 @@ class Walk:
             items_at = Mux(chosen & ~length.zero, aligned, items_at)
         # After an error, `first_at` only frees beats. It must not pass the packet's end; so it
         # stays until the end state, which drops the rest of the packet as it arrives.
-        kept = Mux(self.at_end, arrival.limit, self.first_at)
+        kept = named(m, "first_at_if_bad", Mux(self.at_end, arrival.limit, self.first_at))
+        items_at = named(m, "first_at_if_good", items_at)
         with m.If(issue | (bad & self.at_end)):
             m.d.sync += self.first_at.eq(Mux(self.ends_packet, start, Mux(bad, kept, items_at)))
         with m.If(issue):
