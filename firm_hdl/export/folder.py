@@ -49,8 +49,8 @@ _MOST_NAME = 300
 _OURS = (
     r"((vhdl|systemverilog|ip/\w+(/xgui)?)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|"
     r"\w+_(cdr|ros1)_\d+\w*_pkg|README|bench_files|bitstream|component|datasheet|files|layout|"
-    r"link|package|pins|plan|report|run_ghdl|run_iverilog|stimuli|summary|top|vivado|vunit_run|"
-    r"waivers)\.(bin|bit|core|f|h|html|lpf|md|pcf|py|rdl|sh|sv|svg|tcl|sdc|txt|v|veo|vhd|vlt|xdc|"
+    r"link|package|pins|plan|report|run_ghdl|run_iverilog|run_verilator|stimuli|summary|top|vivado|"
+    r"vunit_run|waivers)\.(bin|bit|core|f|h|html|lpf|md|pcf|py|rdl|sh|sv|svg|tcl|sdc|txt|v|veo|vhd|vlt|xdc|"
     r"xml|yaml))"
 )
 """Names of the files that firm-hdl writes, and deletes if they are outdated."""
