@@ -10,6 +10,7 @@ from firm_hdl.node.description import Description, Direction, Store
 from firm_hdl.node.frame import HEADER_BYTES
 
 __all__ = [
+    "assembly_bytes",
     "bytes_on_link",
     "largest_bytes",
     "link_bytes_per_second",
@@ -26,6 +27,9 @@ _MOST_FRAGMENTS = 1 << 16
 # Bytes of an RTPS datagram besides the payload: of a reply with a heartbeat and padding; of what
 # peers send.
 _RTPS_SENT, _RTPS_RECEIVED = 167, 256
+# What a datagram has besides a sample, at most. With 1,472 bytes, peers cut samples of more than
+# 1,280 bytes: first those of firm-hdl, then Cyclone DDS, at 1,344.
+_RTPS_HEADS = 192
 
 
 def largest_bytes(description: Description, store: Store) -> int:
@@ -33,6 +37,15 @@ def largest_bytes(description: Description, store: Store) -> int:
     most = metrics_of(store.message, description.wire).max_bytes
     sizes = (store.memory_bytes, store.max_message_bytes)
     return min(*sizes, most) if most is not None else min(sizes)
+
+
+def assembly_bytes(datagram_bytes: int, largest: int) -> int:
+    """Return the memory in which a topic puts a sample together that comes in fragments.
+
+    It is a power of two, or 0 if the largest message fits into a datagram.
+    """
+    is_cut = largest > datagram_bytes - _RTPS_HEADS
+    return 1 << (largest - 1).bit_length() if is_cut else 0
 
 
 def most_bytes(description: Description, direction: Direction, store: Store) -> int:

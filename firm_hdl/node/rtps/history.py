@@ -10,7 +10,7 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware.memories import BlockMemory
-from firm_hdl.node.capacity import largest_bytes
+from firm_hdl.node.capacity import assembly_bytes, largest_bytes
 from firm_hdl.node.description import Description
 from firm_hdl.node.rtps.endpoints import Endpoint
 
@@ -19,11 +19,6 @@ __all__ = ["MOST_SAMPLES", "History", "Part", "assembly_parts", "bytes_of", "par
 MOST_SAMPLES = 16
 """Samples that a writer keeps at most: a power of two. The depth of QoS is a request of at least as
 many, where readers are served from the history; what has room is kept."""
-
-
-_HEADS_BYTES = 192
-"""What a datagram has besides a sample, at most. With 1,472 bytes, peers cut samples of more than
-1,280 bytes: first those of firm-hdl, then Cyclone DDS, at 1,344."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,10 +59,11 @@ def assembly_parts(description: Description, readers: tuple[Endpoint, ...]) -> t
 
     Readers whose messages fit into a datagram of `datagram_bytes` have none.
     """
-    whole = description.link.datagram_bytes - _HEADS_BYTES
+    datagram = description.link.datagram_bytes
     stores = [each.topic.store("in") for each in readers if each.topic]
-    largest = [largest_bytes(description, store) for store in stores]
-    return _placed([0 if most <= whole else 1 << (most - 1).bit_length() for most in largest])
+    return _placed(
+        [assembly_bytes(datagram, largest_bytes(description, store)) for store in stores]
+    )
 
 
 def _placed(sizes: list[int]) -> tuple[Part, ...]:
