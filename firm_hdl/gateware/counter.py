@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from amaranth.hdl import Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.positions import any_of, named, pick
+from firm_hdl.names.attributes import REMARK
 
 __all__ = ["Counter"]
 
@@ -57,10 +58,22 @@ class Counter:
 
     def __init__(self, most: int, name: str, start: int | None = None):
         bits = max(3, most.bit_length())
-        self.value = Signal(bits, name=f"{name}_value", init=start or 0, reset_less=start is None)
+        self.value = Signal(
+            bits,
+            name=f"{name}_value",
+            init=start or 0,
+            reset_less=start is None,
+            attrs={REMARK: "the number left is value - less - pending"},
+        )
         self.less: Value = Const(0, 1)
-        self.last = Signal(name=f"{name}_last", init=start in (None, 1))
-        self.pending = Signal(name=f"{name}_pending", reset_less=start is None)
+        self.last = Signal(
+            name=f"{name}_last", init=start in (None, 1), attrs={REMARK: "one is left"}
+        )
+        self.pending = Signal(
+            name=f"{name}_pending",
+            reset_less=start is None,
+            attrs={REMARK: "a count of the cycle before, not subtracted yet"},
+        )
         self.name = name
         self._loads: list[_Load] = []
         self._defaults: list[_Load] = []
@@ -135,7 +148,13 @@ class Counter:
         delayed = [each for each in self._defaults if each.double is not None]
         if not delayed:
             return by_value
-        second, fresh = Signal(name=f"{self.name}_second"), Signal(name=f"{self.name}_fresh")
+        second, fresh = (
+            Signal(name=f"{self.name}_{name}", attrs={REMARK: remark})
+            for name, remark in (
+                ("second", "of a number that is just loaded: it was 2"),
+                ("fresh", "the number is loaded in this cycle, so second counts"),
+            )
+        )
         m.d.sync += [
             # If `fresh`, the value is still to be loaded, so the flag `double` decides.
             fresh.eq(~loads & any_of([each.on for each in delayed])),
@@ -150,7 +169,10 @@ class Counter:
         for k, each in enumerate(self._defaults):
             on = each.on
             if each.double is not None:
-                on = Signal(name=f"{self.name}_comes_{k}")
+                on = Signal(
+                    name=f"{self.name}_comes_{k}",
+                    attrs={REMARK: "a length that was looked up in the cycle before is loaded"},
+                )
                 m.d.sync += on.eq(each.on & ~loads)
             cases.append(replace(each, on=on & ~loads))
         keeps = named(m, f"{self.name}_value_keeps", ~any_of([each.on for each in cases]))

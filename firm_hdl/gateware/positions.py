@@ -55,9 +55,10 @@ class Ring:
         self.beat_bits = self.depth.bit_length()
         self.bits = self.lane_bits + self.beat_bits
 
-    def position(self, name: str, *, init: int = 0) -> Signal:
+    def position(self, name: str, *, init: int = 0, remark: str = "") -> Signal:
         """Make a signal for a position."""
-        return Signal(self.bits, name=name, init=init)
+        attrs = {REMARK: remark} if remark else None
+        return Signal(self.bits, name=name, init=init, attrs=attrs)
 
     def lane(self, position: Value) -> Value:
         """Return the lane of a byte in its bus word."""

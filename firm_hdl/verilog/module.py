@@ -79,6 +79,11 @@ class _Statements(Statements):
         )
         yield from self.if_([Arm(self.values.boolean(cell.ports["S"]), (b,)), Arm(None, (a,))])
 
+    def choice_of(self, target: Slice, select: Spec, b: Spec, a: Spec) -> str:
+        name = part(self.targets[target.wire], target.low, target.width)
+        one, other = (self.values.value(spec).operand() for spec in (b, a))
+        return f"{name} {self.operator} {self.values.boolean(select).operand()} ? {one} : {other};"
+
     def case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
         yield f"case ({self.values.value(switch.selector).text})"
         for patterns, case in plain:

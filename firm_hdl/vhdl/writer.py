@@ -211,9 +211,10 @@ class Writer(ABC):
 
     def purpose(self) -> Iterator[str]:
         """Yield comments on what the module is for."""
-        text = str(self.module.attributes.get(PURPOSE, ""))
-        for line in textwrap.wrap(text if text.isascii() and text.isprintable() else "", 96):
-            yield f"{self.mark} {line}"
+        first, *lines = str(self.module.attributes.get(PURPOSE, "")).split("\n")
+        for line in [*textwrap.wrap(first, 96), *lines]:
+            if line.isascii() and line.isprintable():
+                yield f"{self.mark} {line}".rstrip()
 
     def remark(self, wire: str, *, layout: bool = False) -> str:
         """Write a comment on what the type of a wire does not say, perhaps with its layout."""

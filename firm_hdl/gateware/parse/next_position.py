@@ -23,6 +23,14 @@ from firm_hdl.program import (
 __all__ = ["NextPositions", "next_positions"]
 
 
+_REMARKS = {
+    "add": "bytes from last_at to the last byte of the step after it",
+    "mask": "low bits of that position that are cleared, for alignment",
+    "low": "low bits that are set then",
+    "over_rest": "over_rest is added instead: the rest of a run is in between",
+}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NextPositions:
     """The last byte of the next state, for each way to it.
@@ -85,7 +93,7 @@ def next_positions(
             # On a narrow bus, positions are short: their constants are not worth registers.
             if bus < 8:
                 return flow.select(bits, value)
-            return flow.register(f"{name}_{what}", bits, value)
+            return flow.register(f"{name}_{what}", bits, value, remark=_REMARKS[what])
 
         low_bits = 3 if bus >= 8 else ring.bits
         return _Way(
@@ -140,7 +148,10 @@ def next_positions(
             mask.eq(chosen("mask", 3)),
             low.eq(chosen("low", len(low))),
         ]
-        result = ring.position(f"{kind}_last_at")
+        result = ring.position(
+            f"{kind}_last_at",
+            remark="((last_at + add) and not mask) or low: from 21, +6, mask 3, low 3 lead to 27",
+        )
         if isinstance(phase, int):
             m.d.comb += result.eq((total & ~Cat(mask, Const(0, len(total) - 3))) | low)
             return result

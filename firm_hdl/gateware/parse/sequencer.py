@@ -173,8 +173,15 @@ class Sequencer(wiring.Component):
             lambda s: s.map_offset,
             remark="signed: first byte of the map's last word, relative to last_at",
         )
-        two_word_map = flow.register("two_word_map", 1, lambda s: s.two_word_map)
-        is_counted = flow.register("is_counted", 1, lambda s: s.is_counted)
+        two_word_map = flow.register(
+            "two_word_map", 1, lambda s: s.two_word_map, remark="the map has two bus words"
+        )
+        is_counted = flow.register(
+            "is_counted",
+            1,
+            lambda s: s.is_counted,
+            remark="the step is a word that a length counts",
+        )
         offset = map_offset.as_signed()
 
         # First bytes of the two words.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
@@ -12,6 +13,7 @@ from firm_hdl.gateware.parse.byte_flags import ByteFlags
 from firm_hdl.gateware.parse.lengths import length_of_step
 from firm_hdl.gateware.parse.next_position import next_positions
 from firm_hdl.gateware.positions import Ring, align_up, any_of, named
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Findings", "Walk"]
@@ -121,18 +123,31 @@ class Walk:
         # After a length that claims too much, its state begins nothing: `advance` writes the flag.
         self.may_revisit = program.has_leaves and plan.has_claims
         self.begins_nothing = flow.register(
-            "begins_nothing", 1, lambda s: s.begins_nothing, written=self.may_revisit
+            "begins_nothing",
+            1,
+            lambda s: s.begins_nothing,
+            written=self.may_revisit,
+            remark="the step begins neither a run nor a loop",
         )
-        self.begins_run = flow.register("begins_run", 1, lambda s: s.begins_run)
-        self.begins_loop = flow.register("begins_loop", 1, lambda s: s.begins_loop)
-        self.is_words = flow.register("is_words", 1, lambda s: s.is_words)
-        self.takes_rest = flow.register("takes_rest", 1, lambda s: s.takes_rest)
-        self.at_end = flow.register("at_end", 1, lambda s: s.at_end)
+        self.begins_run, self.begins_loop, self.is_words, self.takes_rest, self.at_end = (
+            flow.register(name, 1, attrgetter(name), remark=remark)
+            for name, remark in (
+                ("begins_run", "the step ends with a length that counts items"),
+                ("begins_loop", "the step ends with a length that counts elements"),
+                ("is_words", "the step is a bus word of a run, and is repeated"),
+                ("takes_rest", "the step begins with the rest of the run before it"),
+                ("at_end", "the message is over, but not the packet"),
+            )
+        )
 
         start = program.states[program.start.to or 0].last_offset
-        self.last_at = ring.position("last_at", init=start % (1 << ring.bits))
-        self.first_at = ring.position("first_at")
-        self.rest = Signal(program.rest_bits, name="rest")
+        self.last_at = ring.position(
+            "last_at", init=start % (1 << ring.bits), remark="last byte of the step's map or word"
+        )
+        self.first_at = ring.position("first_at", remark="first byte after the step before")
+        self.rest = Signal(
+            program.rest_bits, name="rest", attrs={REMARK: "items in the rest of the run"}
+        )
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
         self.revisits: Value = Signal(name="revisits") if self.may_revisit else Const(0, 1)
         self.phase: Value | int = plan.header_bytes
@@ -279,7 +294,13 @@ class Walk:
         )
         # Decisions by a length are late in the cycle, so what they select from comes first.
         early, last = ring.position("early_last_at"), ring.position("next_last_at")
-        begin = start + program.states[program.start.to or 0].last_offset
+        offset = program.states[program.start.to or 0].last_offset
+        begin = named(
+            m,
+            "last_at_of_next_packet",
+            (start + offset)[: ring.bits],
+            f"its first step ends {offset} bytes after its first byte",
+        )
         exit_or_body = Mux(self.exits_always, nexts.exit, nexts.body)
         exit_or_skipped = Mux(length.loop_skips, nexts.exit, early)
         m.d.comb += [
