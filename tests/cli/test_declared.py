@@ -118,7 +118,8 @@ def is_refused(*words):
 def test_other_actions_of_a_node_have_these_defaults():
     info = {"action": "info", "file": "n.yaml", "path": []}
     assert parsed("node", "info", "n.yaml") == {**info, "as_json": False, "members": False}
-    assert parsed("node", "new", "n.yaml") == {**info, "action": "new", "language": None}
+    new = {**info, "action": "new", "language": None, "ports": None}
+    assert parsed("node", "new", "n.yaml") == new
     build = {**info, "action": "build", "out": "node_out", "force": False, "datasheet": False}
     assert parsed("node", "build", "n.yaml") == {
         **build,
