@@ -43,7 +43,7 @@ PATH/consume_cdc/stage*_reg[*] PATH/rst_cdc/stage*_reg}]
 set_false_path -to [get_pins {PATH/rst_cdc/stage*_reg/PRE}]
 # If the memory is made of LUTs, its words cross long after they were written.
 set_max_delay -quiet -datapath_only -from [get_cells -quiet {PATH/storage_reg*}] \
--to [get_cells -quiet {PATH/r_data*_reg[*]}] $period
+-to [get_cells -quiet {PATH/r_port_data*_reg[*]}] $period
 """
 
 _SDC = """\
