@@ -1020,7 +1020,11 @@ class Engine(wiring.Component):
     # Fragments (8.4.14).
 
     def _cutting(self, m: Module) -> None:
-        """Order the wanted fragments of a sample one after another, then a heartbeat."""
+        """Order the wanted fragments of a sample one after another, then a heartbeat.
+
+        They are sent without a pause, so a sample needs no state of its own in each row. A
+        NACK_FRAG is answered in the same way, while its event waits.
+        """
         event, row, sample = self.events.payload, self._row, self._sample
         size = fragment_bytes(self.description.link)
         with m.State("NACK_FRAG"):
@@ -1031,7 +1035,6 @@ class Engine(wiring.Component):
                 self._wanted.eq(event.bits << 1),
                 row.tries.eq(0),
                 row.ask.eq(row.reliable),
-                self._answers.bit_select(self._peer, 1).eq(1),
             ]
             m.next = "STORE_EVENT"
             is_there = (event.number >= self._lower) & (event.number <= self._last)
