@@ -78,3 +78,8 @@ def test_discovery_and_samples_both_ways(has_losses):
     assert came(reader.guid) == [each + bytes(-len(each) % 4) for each in MESSAGES]
     assert loses.lost == ({False, True} if has_losses else set())
     assert wires.counters["malformed"] == 1
+    if not has_losses:
+        # The header of a datagram, which was stored, has 60 bytes.
+        assert wires.waits[0] < 80
+        begins = min(each for each in wires.sent_at if each > wires.taken_at[0])
+        assert begins - wires.taken_at[0] < 40
