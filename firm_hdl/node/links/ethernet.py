@@ -15,6 +15,7 @@ from firm_hdl.ethernet.datagrams import datagram_layout
 from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
 from firm_hdl.ethernet.phy import PHYS, GmiiSignature, MiiSignature, RgmiiSignature
 from firm_hdl.gateware.packets.counters import add_counters
+from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.node.control import ethernet_counter
 from firm_hdl.node.description import Description, Link
 from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
@@ -138,13 +139,17 @@ class EthernetLink(wiring.Component):
         m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
-        width = datagram_layout(1).size
+        layout = datagram_layout(1)
+        # From the memory of the edge to the far side of the FIFO, it is too long a way.
+        halfway = StreamSlice(layout)
+        m.submodules.halfway = DomainRenamer(_APART)(halfway)
+        wiring.connect(m, network.received, halfway.i)
         for name, source, target, domains in (
-            ("to_node", network.received, upper.datagrams_in, (_APART, "sync")),
+            ("to_node", halfway.o, upper.datagrams_in, (_APART, "sync")),
             ("to_edge", upper.datagrams_out, network.sent, ("sync", _APART)),
         ):
             m.submodules[name] = fifo = AsyncFIFOBuffered(
-                width=width, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
+                width=layout.size, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
             )
             m.d.comb += [
                 fifo.w_data.eq(source.payload),

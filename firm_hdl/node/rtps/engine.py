@@ -921,7 +921,10 @@ class Engine(wiring.Component):
                 self._is_final.eq(row.synced),
             ]
             m.next = "NEXT"
-            with m.If(row.ask & lacks & (row.tries == _MOST_TRIES)):
+            # Each HEARTBEAT asks for an answer, and each sample that comes again may bring one. So
+            # what was asked for is waited for, or a datagram too many would make ever more of them.
+            is_due = row.ask & (~lacks | (row.timer == 0) | (row.next >= row.base))
+            with m.If(is_due & lacks & (row.tries == _MOST_TRIES)):
                 # Such as a sample that is larger than the memory: it will never come.
                 m.d.comb += self.lost.eq(1)
                 m.d.sync += [
@@ -930,11 +933,12 @@ class Engine(wiring.Component):
                     row.tries.eq(0),
                 ]
                 m.next = "STORE"
-            with m.Elif(row.ask):
+            with m.Elif(is_due):
                 m.d.sync += [
                     row.ask.eq(0),
                     row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
                     row.tries.eq(row.tries + lacks),
+                    row.base.eq(row.next + Mux(is_many, 32, missing[:6])),
                 ]
                 self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
                 with m.If(lacks & assembly.holds):
@@ -950,7 +954,7 @@ class Engine(wiring.Component):
                 with m.If(row.timer != 0):
                     m.d.sync += row.timer.eq(row.timer - 1)
                 with m.Else():
-                    m.d.sync += row.ask.eq(row.reliable & (lacks | ~row.synced))
+                    m.d.sync += row.ask.eq(row.ask | (row.reliable & (lacks | ~row.synced)))
 
         with m.State("COUNT"):
             # Of the fragments that make up `_to` bytes, those that one word can name.

@@ -46,8 +46,8 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
         The lowest number that is for this reader.
     base, request : unsigned(32)
         Of a reader: the number of the highest bit of `request`, whose bits are samples to send
-        again. Of a writer, the highest bit is that of `next`, and bits are samples that need not
-        come.
+        again. Of a writer: the lowest number that was never asked for; the highest bit of `request`
+        is that of `next`, and bits are samples that need not come.
     synced : unsigned(1)
         Whether the writer has said where its samples begin.
     ask : unsigned(1)

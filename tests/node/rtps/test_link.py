@@ -127,3 +127,8 @@ def test_discovery_and_samples_both_ways(has_losses):
     assert len(loses.lost) == (4 if has_losses else 0)
     assert wires.counters["malformed"] == 1
     assert has_losses or wires.counters["cut"] == 4
+    if not has_losses:
+        # The header of a datagram, which was stored, has 60 bytes.
+        assert wires.waits[0] < 80
+        begins = min(each for each in wires.sent_at if each > wires.taken_at[0])
+        assert begins - wires.taken_at[0] < 40
