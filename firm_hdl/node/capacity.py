@@ -28,8 +28,8 @@ def most_bytes(description: Description, direction: Direction, store: Store) -> 
         return min(most, room if direction == "in" else link.datagram_bytes - _RTPS_SENT)
     if direction == "in" and link.kind != "stream":
         most = min(most, link.memory_bytes - HEADER_BYTES)
-    if link.kind == "udp":
-        most = min(most, _MOST_FRAGMENTS * (link.datagram_bytes - HEADER_BYTES))
+    if link.frame_bytes is not None:
+        most = min(most, _MOST_FRAGMENTS * (link.frame_bytes - HEADER_BYTES))
     return most
 
 
@@ -41,7 +41,7 @@ def bytes_on_link(description: Description, packet_bytes: int) -> int:
     if link.kind == "uart":
         # A byte of COBS, and a byte 0 before and after.
         return HEADER_BYTES + packet_bytes + CRC_BYTES + 3
-    room = link.datagram_bytes - HEADER_BYTES if link.kind == "udp" else max(1, packet_bytes)
+    room = max(1, packet_bytes) if link.frame_bytes is None else link.frame_bytes - HEADER_BYTES
     return packet_bytes + HEADER_BYTES * max(1, -(-packet_bytes // room))
 
 
