@@ -26,6 +26,11 @@ _PARTS: dict[str, tuple[str, float, dict[str, tuple[float, float]]]] = {
         210,
         {"constant": (376, 426), "bus_bytes": (15.1, 31.9)},
     ),
+    "axi_dma": (
+        "links of 1 and 8 bytes, the clock of 8",
+        150,
+        {"constant": (1077, 1212), "bus_bytes": (142, 122)},
+    ),
     "uart": (
         "links of 1 and 8 bytes, the clock of 8",
         154,

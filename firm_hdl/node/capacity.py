@@ -55,8 +55,8 @@ def most_bytes(description: Description, direction: Direction, store: Store) -> 
         return min(most, link.memory_bytes - _RTPS_RECEIVED) if direction == "in" else most
     if direction == "in" and link.kind != "stream":
         most = min(most, link.memory_bytes - HEADER_BYTES)
-    if link.kind == "udp":
-        most = min(most, _MOST_FRAGMENTS * (link.datagram_bytes - HEADER_BYTES))
+    if link.frame_bytes is not None:
+        most = min(most, _MOST_FRAGMENTS * (link.frame_bytes - HEADER_BYTES))
     return most
 
 
@@ -69,7 +69,7 @@ def bytes_on_link(description: Description, packet_bytes: int) -> int:
     if link.kind == "uart":
         # A byte of COBS, and a byte 0 before and after.
         return HEADER_BYTES + packet_bytes + CRC_BYTES + 3
-    room = link.datagram_bytes - HEADER_BYTES if link.kind == "udp" else max(1, packet_bytes)
+    room = max(1, packet_bytes) if link.frame_bytes is None else link.frame_bytes - HEADER_BYTES
     return packet_bytes + HEADER_BYTES * max(1, -(-packet_bytes // room))
 
 

@@ -48,9 +48,9 @@ EthernetKind: TypeAlias = Literal["stream", "gmii", "rgmii", "mii"]
 ETHERNETS: tuple[EthernetKind, ...] = ("stream", "gmii", "rgmii", "mii")
 """Where a link `udp` ends: at datagrams for a core below, or at the pins of a PHY."""
 
-LinkKind: TypeAlias = Literal["stream", "udp", "uart", "rtps"]
+LinkKind: TypeAlias = Literal["stream", "axi_dma", "udp", "uart", "rtps"]
 
-LINKS: tuple[LinkKind, ...] = ("stream", "udp", "uart", "rtps")
+LINKS: tuple[LinkKind, ...] = ("stream", "axi_dma", "udp", "uart", "rtps")
 """All links."""
 
 SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
@@ -164,10 +164,13 @@ class Link:
     ----------
     kind : LinkKind
     memory_bytes : int
-        Memory in which a message is put together and checked (`udp` and `uart`). The largest
-        message that passes has 16 bytes less. With `rtps`, datagrams wait there.
+        Memory in which a message is put together and checked (`axi_dma`, `udp` and `uart`). The
+        largest message that passes has 16 bytes less. With `rtps`, datagrams wait there.
     packets : int
         Most messages in that memory; most datagrams with `rtps`.
+    buffer_bytes : int
+        Most bytes of a frame, header included: the size of a buffer in the memory of the processor
+        (`axi_dma`).
     datagram_bytes : int
         Most bytes of a datagram's payload, header included (`udp`, and what `rtps` sends).
     data_bytes : int
@@ -205,6 +208,7 @@ class Link:
     kind: LinkKind
     memory_bytes: int = 1 << 14
     packets: int = 16
+    buffer_bytes: int = 16_368
     datagram_bytes: int = DATAGRAM_BYTES
     data_bytes: int = 1
     port: int = 7411
@@ -220,6 +224,16 @@ class Link:
     peers: int = 8
     matches: int = 32
     static_peers: tuple[str, ...] = ()
+
+    @property
+    def frame_bytes(self) -> int | None:
+        """Most bytes of a frame, header included; `None`: a message is one frame of any size."""
+        return {"axi_dma": self.buffer_bytes, "udp": self.datagram_bytes}.get(self.kind)
+
+    @property
+    def can_wait(self) -> bool:
+        """Whether what comes can be held."""
+        return self.kind in ("stream", "axi_dma")
 
     @property
     def has_ethernet(self) -> bool:

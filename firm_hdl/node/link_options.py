@@ -15,12 +15,14 @@ from firm_hdl.node.description import (
     Link,
     Topic,
 )
+from firm_hdl.node.frame import FRAGMENT_UNIT
 from firm_hdl.node.marked_yaml import Entry, Marked
 
 __all__ = ["LINK_OPTIONS", "read_link", "with_memory"]
 
 LINK_OPTIONS: dict[str, tuple[str, ...]] = {
     "stream": (),
+    "axi_dma": ("memory_bytes", "packets", "buffer_bytes"),
     "udp": (
         *("memory_bytes", "packets", "datagram_bytes", "data_bytes", "port", "host", "host_port"),
         *("ethernet", "mac", "address", "gateway"),
@@ -36,6 +38,7 @@ LINK_OPTIONS: dict[str, tuple[str, ...]] = {
 _LIMITS: dict[str, tuple[int, int]] = {
     "memory_bytes": (64, 1 << 26),
     "packets": (1, 1 << 12),
+    "buffer_bytes": (32, 65_520),
     # A datagram of IPv4 has at most 65,507 bytes.
     "datagram_bytes": (32, 65_507),
     "data_bytes": (1, 16),
@@ -174,9 +177,10 @@ def _check(link: Link, known: dict[str, Entry], entry: Entry, clock_hz: float) -
         known["memory_bytes"].error(f"'memory_bytes' must be a power of two: {link.memory_bytes}")
     if link.data_bytes not in NODE_BUS_BYTES:
         known["data_bytes"].error(f"'data_bytes' must be 1, 2, 4, 8 or 16, not {link.data_bytes}")
-    if link.kind == "udp" and link.datagram_bytes % 16:
-        near = link.datagram_bytes // 16 * 16
-        known["datagram_bytes"].error(f"'datagram_bytes' must be a multiple of 16, such as {near}")
+    if link.frame_bytes is not None and link.frame_bytes % FRAGMENT_UNIT:
+        name = "buffer_bytes" if link.kind == "axi_dma" else "datagram_bytes"
+        near = link.frame_bytes // FRAGMENT_UNIT * FRAGMENT_UNIT
+        known[name].error(f"'{name}' must be a multiple of {FRAGMENT_UNIT}, such as {near}")
     if link.kind == "uart":
         _check_baud(link, known.get("baud", entry), clock_hz)
 

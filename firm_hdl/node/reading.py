@@ -622,7 +622,7 @@ class TopicReader:
         if entry is None:
             return usual
         policy = entry.choice(("wait", "drop"), usual)
-        if policy == "wait" and kind == "subscribe" and self.link.kind != "stream":
+        if policy == "wait" and kind == "subscribe" and not self.link.can_wait:
             entry.error(f"a link of kind '{self.link.kind}' cannot be held; use 'drop'")
         return policy
 

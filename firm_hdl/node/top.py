@@ -9,6 +9,7 @@ __all__ = ["NodeTop", "node_ports"]
 
 _LINK: dict[str, str] = {
     "frames_in": "s_axis",
+    "pieces_in": "s_axis",
     "frames_out": "m_axis",
     "datagrams_in": "udp_rx",
     "datagrams_out": "udp_tx",
@@ -18,6 +19,8 @@ _LINK: dict[str, str] = {
     "rx": "uart_rx",
     "tx": "uart_tx",
     "nonce": "nonce",
+    "mm2s_aresetn": "mm2s_aresetn",
+    "s2mm_aresetn": "s2mm_aresetn",
 }
 """How ports of links are called."""
 
@@ -68,4 +71,6 @@ def _spelled(path: Path) -> Path:
         return path
     if path[1] == "dest":
         return ("m_axis", "tdest")
+    if path[1] == "pieces_in":
+        return ("s_axis", f"t{path[2]}")
     return (_LINK[path[1]], *path[2:])

@@ -31,6 +31,7 @@ NODES = {
         {},
         {
             "udp": {"link": UDP},
+            "dma": {"link": "{kind: axi_dma, buffer_bytes: 32}"},
             "wide": {"link": WIDE_UDP},
             "narrow": {"bus_bytes": "1"},
             "loop": {"accelerator": "firm_hdl.node.loop:Loop", "link": UDP},

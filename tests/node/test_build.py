@@ -113,6 +113,17 @@ def test_a_folder_of_others_is_left_alone(tmp_path):
         build_node(read(RELAY), tmp_path)
 
 
+def test_the_ports_of_a_link_to_a_dma_are_those_of_two_streams():
+    ports = node_ports(Node(read(RELAY, link="axi_dma")))
+    names = {port.name: port.width for port in ports if port.member.startswith("link.")}
+    widths = {"tdata": 32, "tkeep": 4, "tlast": 1, "tvalid": 1, "tready": 1}
+    assert names == {
+        **{f"{way}_axis_{name}": width for way in "sm" for name, width in widths.items()},
+        "mm2s_aresetn": 1,
+        "s2mm_aresetn": 1,
+    }
+
+
 def through(top, source):
     """Send beats of data, keep and last to a top level whose message ports are connected."""
     out = []

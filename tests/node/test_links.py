@@ -6,11 +6,11 @@ from __future__ import annotations
 import random
 
 import pytest
-from amaranth.hdl import Module
+from amaranth.hdl import Module, Signal
 
 from firm_hdl.node import Link
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
-from firm_hdl.node.links import ByteLink, StreamLink, UartLink, UdpLink
+from firm_hdl.node.links import AxiDmaLink, ByteLink, StreamLink, UartLink, UdpLink
 from firm_hdl.node.links.udp import datagram_layout
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
@@ -22,6 +22,7 @@ from tests.node.traffic import (
     link_beats,
     link_output,
     messages_of,
+    pieces_of,
     received_by_host,
     some,
 )
@@ -30,12 +31,12 @@ STALLS = Stalls(0.25, max_cycles=5)
 
 
 class LinkBench:
-    """A link with both of its sides driven and watched."""
+    """A link with both of its sides driven and watched; `design` is what it is a part of."""
 
-    def __init__(self, link, bus, sources, outputs=None, others=None):
+    def __init__(self, link, bus, sources, outputs=None, others=None, design=None):
         self.bus = bus
         self.bench = PacketBench(
-            link,
+            design or link,
             {"sent": link.sent, **sources},
             {"received": link_output(link.received, bus), **(outputs or {})},
             others=others,
@@ -75,6 +76,87 @@ def test_what_is_no_frame_of_a_stream_is_dropped():
     mixed = [frame for pair in zip(good, wrong, strict=True) for frame in pair]
     _, out, counters = bench.run({"frames_in": beats(mixed, 8)}, {"received": 8})
     assert out == messages and counters == {"passed": 8, "malformed": 8}
+
+
+def dma_bench(bus):
+    memory = {"memory_bytes": 2048, "packets": 16, "buffer_bytes": 48}
+    part = AxiDmaLink(bus, Link(kind="axi_dma", **memory))
+    sources, outputs = {"pieces_in": part.pieces_in}, {"frames_out": (part.frames_out, bus, None)}
+    return LinkBench(part, bus, sources, outputs)
+
+
+@pytest.mark.parametrize("bus", by_depth([8], [1, 2, 4, 8, 16]))
+@pytest.mark.parametrize("stalls", by_depth([STALLS], [None, STALLS]))
+def test_buffers_of_a_dma_carry_messages_both_ways(bus, stalls):
+    """Frames come in pieces, and whole or in fragments; none that goes is longer than a buffer."""
+    bench, down, up = dma_bench(bus), some(12, 1), some(12, 2)
+    frames, back = frames_of(down[:6]) + frames_of(down[6:], 48, 6), frames_of(up, 48)
+    rng = random.Random(bus)
+    sources = {
+        "pieces_in": [bits for frame in frames for bits in pieces_of(frame, bus, rng)],
+        "sent": link_beats(up, bus),
+    }
+    # The node is silent until the host has spoken.
+    late = Stalls.bits("0" * 400 + "1" * 10**4)
+    waits = {"pieces_in": stalls or Stalls(), "frames_out": stalls or Stalls(), "sent": late}
+    seen, out, counters = bench.run(
+        sources, {"received": 12, "frames_out": len(back)}, stalls=waits
+    )
+    assert out == down and counters == {"passed": 12}
+    assert seen.packets["frames_out"] == back and max(map(len, back)) <= 48
+
+
+def test_nothing_is_sent_to_a_dma_before_the_host_has_spoken():
+    seen, _, counters = dma_bench(8).run({"sent": link_beats(some(4, 2, (40,)), 8)}, {"sent": 20})
+    assert seen.packets["frames_out"] == [] and counters == {"unsent": 8}
+
+
+def test_resets_of_a_dma_end_the_frames_under_way():
+    """Both directions are reset after three beats of their second frames."""
+    part = AxiDmaLink(8, Link(kind="axi_dma", memory_bytes=1024, packets=8, buffer_bytes=4096))
+    m = Module()
+    m.submodules.link = part
+    came, gone, waits = Signal(16), Signal(16), Signal(8)
+    down, up = some(4, 1, (64,)), some(4, 2, (64,))
+    beats_of = 2 + 64 // 8
+    dma, memory = (each.signature.create() for each in list(part.medium(8).values())[:2])
+    # Both are held when the second frame has three beats, until the resets are over.
+    holds_in = (came == beats_of + 3) & (waits != 40)
+    holds_out = (gone == beats_of + 3) & (waits != 40)
+    is_low = (waits >= 20) & (waits < 36)
+    m.d.sync += [
+        came.eq(came + (dma.valid & dma.ready)),
+        gone.eq(gone + (memory.valid & memory.ready)),
+        waits.eq(waits + (holds_in & holds_out)),
+    ]
+    m.d.comb += [
+        part.mm2s_aresetn.eq(~is_low),
+        part.s2mm_aresetn.eq(~is_low),
+        part.pieces_in.payload.eq(dma.payload),
+        part.pieces_in.valid.eq(dma.valid & ~holds_in),
+        dma.ready.eq(part.pieces_in.ready & ~holds_in),
+        memory.payload.eq(part.frames_out.payload),
+        memory.valid.eq(part.frames_out.valid & ~holds_out),
+        part.frames_out.ready.eq(memory.ready & ~holds_out),
+    ]
+    bench = LinkBench(part, 8, {"pieces_in": dma}, others={"frames_out": memory}, design=m)
+    frames = frames_of(down)
+    source = [bits for frame in frames for bits in pieces_of(frame, 8)]
+    # The DMA has forgotten the rest of the second frame.
+    del source[beats_of + 3 : 2 * beats_of]
+    sent = link_beats(up, 8)
+    seen, out, counters = bench.run(
+        {"pieces_in": source, "sent": sent},
+        {"received": 3, "frames_out": beats_of + 3 + 2 * beats_of},
+        # The third message comes after the host has spoken again.
+        stalls={"sent": Stalls.bits("0" * 60 + "1" * 14 + "0" * 200 + "1" * 10**4)},
+    )
+    assert out == [down[0], *down[2:]]
+    assert counters == {"passed": 3, "cut": 1, "lost": 1, "unsent": 1}
+    words = [bits & ((1 << 64) - 1) for bits in seen.others["frames_out"]]
+    data = b"".join(word.to_bytes(8, "little") for word in words)
+    whole = frames_of(up)
+    assert data == whole[0] + whole[1][:24] + whole[2] + whole[3]
 
 
 ADDRESS, PORT, NODE_PORT = 0xC0A80105, 5005, 7798

@@ -126,8 +126,11 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nnode: b", "2:1: error: 'node' is already in line 1"),
         ("node: a\ndistro: humbel", "did you mean 'humble'?"),
         ("node: a\nclock_mhz: 0", "2:12: error: 'clock_mhz' must be from 1 to 1000, not 0"),
-        ("node: a\nlink: tcp", "'link' must be 'stream', 'udp', 'uart' or 'rtps', not 'tcp'"),
-        ("node: a\nlink: {baud: 1}", "2:1: error: 'link' needs a 'kind': stream, udp, uart, rtps"),
+        ("node: a\nlink: tcp", "'link' must be 'stream', 'axi_dma', 'udp', 'uart' or 'rtps'"),
+        (
+            "node: a\nlink: {baud: 1}",
+            "2:1: error: 'link' needs a 'kind': stream, axi_dma, udp, uart, rtps",
+        ),
         ("node: a\nlink: rtps", "2:1: error: a link of kind 'rtps' needs an 'address', the IPv4"),
         (
             "node: a\nlink: {kind: rtps, address: 224.0.0.1}",
@@ -352,10 +355,10 @@ def test_a_topic_has_packets_in_its_own_direction_alone():
     assert read_description_text(published, library=LIBRARY).link.memory_bytes == 1 << 14
 
 
-@pytest.mark.parametrize("kind", ["stream", "udp"])
-def test_a_stream_alone_can_be_held_by_a_subscription(kind):
+@pytest.mark.parametrize("kind", ["stream", "axi_dma", "udp"])
+def test_a_link_that_loses_nothing_can_be_held_by_a_subscription(kind):
     text = body(a="type: std_msgs/msg/Bool, when_full: wait") + f"link: {kind}"
-    if kind != "stream":
+    if kind == "udp":
         assert "cannot be held" in error_of(text)
         return
     (topic,) = read_description_text(text, library=LIBRARY).topics
@@ -371,6 +374,7 @@ SUBSCRIBED = "subscribe: {a: {type: std_msgs/msg/Bool}}\n"
         ("udp", "memory_bytes", 64, 1 << 26, 0),
         ("udp", "packets", 1, 4096, 1),
         ("udp", "datagram_bytes", 32, 65_504, 16),
+        ("axi_dma", "buffer_bytes", 32, 65_520, 16),
         ("udp", "port", 1, 65_535, 1),
         ("uart", "packets", 1, 4096, 1),
     ],

@@ -20,6 +20,7 @@ __all__ = [
     "link_output",
     "messages_of",
     "packets_of",
+    "pieces_of",
     "received_by_host",
     "some",
 ]
@@ -47,6 +48,28 @@ def link_beats(messages, bus_bytes):
         side = each.topic | each.tag << 16 | len(each.packet) << 48
         beats += [b | side << side_at for b in packet_beats(each.packet, bus_bytes, noise)]
     return beats
+
+
+def pieces_of(packet, bus_bytes, rng=None):
+    """Return the transfers of a packet on a stream of `pieces_layout`, as bits.
+
+    With `rng`, it comes in pieces that start and end in any lane, and its last transfer may be
+    empty; lanes without bytes have noise.
+    """
+    out, at = [], 0
+    while at < len(packet) or not out:
+        start = rng.randrange(bus_bytes) if rng else 0
+        size = bus_bytes - start if rng is None or rng.random() < 0.5 else rng.randrange(bus_bytes)
+        size = min(size, bus_bytes - start, len(packet) - at)
+        data = rng.getrandbits(8 * bus_bytes) if rng else 0
+        mask = ((1 << 8 * size) - 1) << 8 * start
+        data = data & ~mask | int.from_bytes(packet[at : at + size], "little") << 8 * start
+        at += size
+        out.append(data | ((1 << size) - 1) << start + 8 * bus_bytes)
+    if rng and rng.random() < 0.3:
+        out.append(rng.getrandbits(8 * bus_bytes))
+    out[-1] |= 1 << 9 * bus_bytes
+    return out
 
 
 def link_output(port, bus_bytes):

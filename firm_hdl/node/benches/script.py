@@ -112,9 +112,7 @@ class _Writer:
 
     def __init__(self, description: Description, *, knows_topics: bool) -> None:
         self.description, self.knows_topics = description, knows_topics
-        link = description.link
-        # On a stream, a message is one frame.
-        most = None if link.kind == "stream" else link.datagram_bytes
+        most = description.link.frame_bytes
         self._host, self._node = MessageSender(most), MessageSender(most)
         self._back = {came.id: back.id for came, back in description.loops()}
         self._tag = 0x1000

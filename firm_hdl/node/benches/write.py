@@ -114,17 +114,21 @@ def _values(
     for each in channels:
         driven |= {goes for _, goes in (each.valid, *each.payload)}
         used |= {port for pair in (each.valid, each.ready, *each.payload) for port in pair}
-    used |= {port.name for port in ports if port.member.startswith("link.")}
+    resets = {port.name for port in ports[2:] if port.name.endswith("_aresetn")}
+    used |= {port.name for port in ports if port.member.startswith("link.")} - resets
     others = [
         port for port in ports[2:] if port.direction == "in" and port.name not in driven | used
     ]
     is_udp = description.link.kind == "udp"
     return {
         "udp": is_udp,
+        "has_dest": description.link.kind == "stream",
         "word_bytes": description.link.data_bytes if is_udp else description.bus_bytes,
         "signals": [each for each in ports[2:] if each.name in used or each in others],
-        # A stream that nobody connects is taken, and offers nothing.
-        "ties": {each.name: int(each.member.endswith(".ready")) for each in others},
+        # A stream that nobody connects is taken, and offers nothing. No reset is active.
+        "ties": {
+            each.name: int(each.member.endswith(".ready") or each.name in resets) for each in others
+        },
         "widths": {each.name: each.width for each in ports},
         "channels": channels,
         "most_bytes": _most_bytes(description, script),

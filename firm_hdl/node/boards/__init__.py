@@ -13,21 +13,28 @@ from firm_hdl.errors import UserError
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.boards.bytestreams import BAUD_RATES, SerialBoard, TcpBoard
 from firm_hdl.node.boards.udp import UdpBoard
+from firm_hdl.node.boards.zynq import ZynqBoard
 from firm_hdl.node.description import Description
 
 __all__ = ["BOARD_FORMS", "Board", "BoardError", "board_of"]
 
 
-BOARD_FORMS = "sim, udp://HOST[:PORT], tcp://HOST:PORT, serial:///dev/DEVICE[?baud=RATE]"
+BOARD_FORMS = (
+    "sim, udp://HOST[:PORT], tcp://HOST:PORT, serial:///dev/DEVICE[?baud=RATE], zynq://UIO/BUFFER"
+)
 """The forms of names of boards."""
 
 _BOARDS = {
+    "axi_dma": "which goes with --board zynq://UIO/BUFFER, on the processor beside it",
     "udp": "which goes with --board udp://HOST",
     "uart": "which goes with --board serial:///dev/DEVICE or tcp://HOST:PORT",
     "rtps": "with which the node is in the graph by itself: no host runs it",
     "stream": "which goes with --board sim, or a board of your own in Python",
 }
 """The boards of each kind of link."""
+
+_LINKS = {"udp": "udp", "tcp": "uart", "serial": "uart", "zynq": "axi_dma"}
+"""The link of each form of a board."""
 
 
 def board_of(name: str, description: Description, **simulation: Any) -> Board:
@@ -65,9 +72,11 @@ def board_of(name: str, description: Description, **simulation: Any) -> Board:
             board.bytes_per_second = link.baud / 10
         case "serial":
             board = SerialBoard(name, *_device(name, url, link.baud))
+        case "zynq":
+            board = ZynqBoard(name, *_devices(name, url), link.buffer_bytes)
         case _:
             raise UserError(f"'{name}' is no board; boards are {BOARD_FORMS}")
-    kind = "udp" if url.scheme == "udp" else "uart"
+    kind = _LINKS[url.scheme]
     if link.kind != kind:
         raise UserError(
             f"'{name}' is a board whose link is '{kind}', and the link of '{description.node}' is "
@@ -88,6 +97,14 @@ def _address(name: str, url: SplitResult, default: int | None) -> tuple[str, int
     if port is None:
         raise UserError(f"'{name}' needs a port, such as {url.scheme}://{url.hostname}:7411")
     return url.hostname, port
+
+
+def _devices(name: str, url: SplitResult) -> tuple[str, str]:
+    names = (url.netloc, url.path.removeprefix("/"))
+    # One part of a path each, as it has to be a name in sysfs.
+    if url.query or any(not re.fullmatch("[A-Za-z0-9_][A-Za-z0-9_.@,+-]*", each) for each in names):
+        raise UserError(f"'{name}' is not zynq://UIO/BUFFER, such as zynq://uio0/udmabuf0")
+    return names
 
 
 def _device(name: str, url: SplitResult, baud: int) -> tuple[str, int]:

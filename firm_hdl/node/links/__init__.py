@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from firm_hdl.node.description import Description
+from firm_hdl.node.links.axi_dma import AxiDmaLink
 from firm_hdl.node.links.bytestream import ByteLink, UartLink
 from firm_hdl.node.links.ethernet import EthernetLink
 from firm_hdl.node.links.rtps import RtpsLink
@@ -12,6 +13,7 @@ from firm_hdl.node.links.stream import StreamLink
 from firm_hdl.node.links.udp import UdpLink
 
 __all__ = [
+    "AxiDmaLink",
     "ByteLink",
     "EthernetLink",
     "RtpsLink",
@@ -31,6 +33,8 @@ def link_of(description: Description) -> Any:
     match link.kind:
         case "stream":
             return StreamLink(bus)
+        case "axi_dma":
+            return AxiDmaLink(bus, link)
         case "udp":
             return UdpLink(bus, link)
         case "uart":
@@ -49,6 +53,8 @@ def medium_of(description: Description) -> dict[str, Any]:
     match link.kind:
         case "stream":
             return StreamLink.medium(description.bus_bytes)
+        case "axi_dma":
+            return AxiDmaLink.medium(description.bus_bytes)
         case "udp":
             return UdpLink.medium(link)
         case "uart":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from amaranth.hdl import Module
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
@@ -18,7 +20,7 @@ __all__ = ["FrameReceiver"]
 class FrameReceiver(wiring.Component):
     """Put messages together, store them, and pass on those that are whole.
 
-    Nothing of a message that is damaged or not whole gets out. A message without room is dropped.
+    Nothing of a message that is damaged or not whole gets out.
 
     Parameters
     ----------
@@ -28,6 +30,8 @@ class FrameReceiver(wiring.Component):
         Bytes per beat of the messages, likewise.
     link : Link
         Its memory.
+    when_full : "drop" or "wait"
+        What becomes of a message without room.
 
     Members
     -------
@@ -40,8 +44,15 @@ class FrameReceiver(wiring.Component):
     counters : Out(link_counters_layout())
     """
 
-    def __init__(self, in_bytes: int, bus_bytes: int, link: Link):
+    def __init__(
+        self,
+        in_bytes: int,
+        bus_bytes: int,
+        link: Link,
+        when_full: Literal["wait", "drop"] = "drop",
+    ):
         self.in_bytes, self.bus_bytes, self.link = in_bytes, bus_bytes, link
+        self.when_full = when_full
         super().__init__(
             {
                 "frames": In(PacketSignature(in_bytes)),
@@ -57,7 +68,7 @@ class FrameReceiver(wiring.Component):
         m = Module()
         m.submodules.reassembler = whole = Reassembler(self.in_bytes)
         m.submodules.fifo = fifo = PacketFifo(
-            self.in_bytes, self.link.memory_bytes, self.link.packets, when_full="drop"
+            self.in_bytes, self.link.memory_bytes, self.link.packets, when_full=self.when_full
         )
         m.submodules.strip = strip = HeaderStrip(self.bus_bytes)
         last = fifo.packets_out

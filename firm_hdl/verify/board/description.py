@@ -168,7 +168,7 @@ def _link(board: str | None) -> str:
         rates = [value for key, value in parse_qsl(url.query) if key == "baud"]
         # A rate that is none is an error of the board's name, which is found elsewhere.
         return f"{{kind: uart, baud: {rates[-1]}}}" if rates and rates[-1].isdecimal() else "uart"
-    return "stream"
+    return "axi_dma" if url.scheme == "zynq" else "stream"
 
 
 def _port(url: SplitResult) -> str:

@@ -200,7 +200,11 @@ PARTS = (
     ),
     # Those that the estimates of nodes come from.
     *(_core(memories, bus_bytes) for bus_bytes in (1, 8) for memories in (2, 6)),
-    *(_link(kind, bus_bytes) for kind in ("stream", "uart", "udp") for bus_bytes in (1, 8)),
+    *(
+        _link(kind, bus_bytes)
+        for kind in ("stream", "axi_dma", "uart", "udp")
+        for bus_bytes in (1, 8)
+    ),
     _link("rtps", 1, peers=8),
     *(_link("rtps", 8, memories, peers) for memories, peers in _PARTICIPANTS),
     _edge((7411,), (), 0),

@@ -23,11 +23,13 @@ from firm_hdl.errors import UserError
 from firm_hdl.node.boards import BoardError, board_of
 from firm_hdl.node.boards.bytestreams import ByteBoard, SerialBoard, TcpBoard
 from firm_hdl.node.boards.udp import UdpBoard
+from firm_hdl.node.boards.zynq import ZynqBoard
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
 from tests.node.accelerators import echo_text
 from tests.node.bridge.fakes import ECHO, HEARD, LINE, FakeGraph, FakeNode, bridge_of, run_until
 from tests.node.samples import read
 
+MEMORY = read(echo_text(link="{kind: axi_dma, buffer_bytes: 4096}"))
 TEXTS = [b"%d" % n * (n % 300) for n in range(200)]
 
 
@@ -134,12 +136,16 @@ def exchange(board, texts, description=ECHO, seconds=20):
         ("tcp://[::1]:7411", TcpBoard),
         ("serial:///dev/ttyUSB0", SerialBoard),
         ("serial:///dev/ttyUSB0?baud=9600", SerialBoard),
+        ("zynq://uio0/udmabuf0", ZynqBoard),
+        ("zynq://dma/axi-dma.buf", ZynqBoard),
     ],
 )
 def test_names_of_boards(name, kind):
-    board = board_of(name, ECHO if kind is UdpBoard else LINE)
+    links = {UdpBoard: (ECHO, 1472), ZynqBoard: (MEMORY, 4096)}
+    description, frame_bytes = links.get(kind, (LINE, None))
+    board = board_of(name, description)
     assert type(board) is kind and board.name == name
-    assert board.frame_bytes == (1472 if kind is UdpBoard else None)
+    assert board.frame_bytes == frame_bytes
 
 
 @pytest.mark.parametrize(
@@ -164,6 +170,11 @@ def test_names_of_boards(name, kind):
         ("tcp://[x]:1", "'tcp://[x]:1' is no board: "),
         ("tcp://:1", "is not tcp://HOST:PORT"),
         ("udp://a:1?b=2", "is not udp://HOST:PORT"),
+        ("zynq://uio0", "is not zynq://UIO/BUFFER, such as zynq://uio0/udmabuf0"),
+        ("zynq:///udmabuf0", "is not zynq://UIO/BUFFER"),
+        ("zynq://uio0/../mem", "is not zynq://UIO/BUFFER"),
+        ("zynq://uio0/..", "is not zynq://UIO/BUFFER"),
+        ("zynq://uio0/udmabuf0?a=1", "is not zynq://UIO/BUFFER"),
     ],
 )
 def test_wrong_names_of_boards(name, message):
@@ -171,10 +182,17 @@ def test_wrong_names_of_boards(name, message):
         board_of(name, ECHO)
 
 
-@pytest.mark.parametrize("name", ["udp://a", "udp://a:1", "tcp://a:1", "serial:///dev/x"])
-@pytest.mark.parametrize("link", ["stream", "udp", "uart"])
-def test_a_board_of_another_link_is_refused(name, link):
-    kind = "udp" if name.startswith("udp") else "uart"
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("udp://a", "udp"),
+        ("tcp://a:1", "uart"),
+        ("serial:///dev/x", "uart"),
+        ("zynq://uio0/udmabuf0", "axi_dma"),
+    ],
+)
+@pytest.mark.parametrize("link", ["stream", "axi_dma", "udp", "uart"])
+def test_a_board_of_another_link_is_refused(name, kind, link):
     if link == kind:
         board_of(name, read(echo_text(link=link)))
         return

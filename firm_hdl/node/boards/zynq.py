@@ -1,0 +1,275 @@
+"""A node in the chip of the processor: frames in memory, which an AXI DMA of Xilinx moves.
+
+The DMA is in direct register mode. Names of registers and bits are those of its manual, PG021.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Literal, Protocol
+
+from firm_hdl.node.boards.board import Board, BoardError
+from firm_hdl.node.boards.devices import DmaBuffer, Uio
+
+__all__ = ["Buffer", "Registers", "ZynqBoard", "open_devices"]
+
+Channel = Literal["MM2S", "S2MM"]
+
+_AT: dict[Channel, int] = {"MM2S": 0x00, "S2MM": 0x30}
+_DMACR, _DMASR, _ADDRESS, _ADDRESS_MSB, _LENGTH = 0x00, 0x04, 0x18, 0x1C, 0x28
+_RS, _ALWAYS_1, _RESET = 1 << 0, 1 << 1, 1 << 2
+_HALTED, _SG_INCLUDED = 1 << 0, 1 << 3
+# Of the same bits in DMACR, which enable them.
+_IOC_IRQ, _ERR_IRQ = 1 << 12, 1 << 14
+_ERRORS = {
+    1 << 4: "DMAIntErr: a frame was longer than its buffer, or the DMA failed inside",
+    1 << 5: "DMASlvErr: the memory refused an access",
+    1 << 6: "DMADecErr: no memory has this address",
+}
+
+_LENGTH_BITS = "xlnx,sg-length-width"
+"""The property of the DMA in the device tree, also without scatter-gather."""
+
+_ALIGNMENT = 64
+_ROOM_BYTES = 1 << 16
+_MOST_AT_ONCE = 256
+_WAIT_SECONDS = 0.1
+"""How long a reset or a start may take: each takes a few cycles."""
+
+
+class Registers(Protocol):
+    """What a board needs of a :class:`.Uio`."""
+
+    def fileno(self) -> int: ...
+    def read(self, offset: int) -> int: ...
+    def write(self, offset: int, value: int) -> None: ...
+    def take_interrupt(self) -> None: ...
+    def enable_interrupt(self) -> None: ...
+    def tree_value(self, name: str) -> int | None: ...
+    def close(self) -> None: ...
+
+
+class Buffer(Protocol):
+    """What a board needs of a :class:`.DmaBuffer`."""
+
+    name: str
+    address: int
+    size: int
+    data: memoryview
+
+    def to_device(self, offset: int, size: int, *, is_written: bool) -> None: ...
+    def to_processor(self, offset: int, size: int) -> None: ...
+    def close(self) -> None: ...
+
+
+def open_devices(uio: str, buffer: str) -> tuple[Registers, Buffer]:
+    """Open the devices of these names; raises :class:`BoardError`."""
+    registers = Uio(uio)
+    try:
+        return registers, DmaBuffer(buffer)
+    except BoardError:
+        registers.close()
+        raise
+
+
+class ZynqBoard(Board):
+    """A board with the link `axi_dma`, on its own processor.
+
+    The buffer has three parts of a frame each: one that is sent, and two to receive, of which the
+    DMA has one while the other is read. What else is sent waits here.
+
+    An error of the DMA ends the board. It is counted as ``DMA errors``, and opening the board again
+    resets the DMA, which tells the node to begin anew.
+
+    Parameters
+    ----------
+    name : str
+    uio, buffer : str
+        Names of the devices.
+    frame_bytes : int
+        Most bytes of a frame: the `buffer_bytes` of the link.
+    devices : callable
+        Opens the devices.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        uio: str,
+        buffer: str,
+        frame_bytes: int,
+        devices: Callable[[str, str], tuple[Registers, Buffer]] = open_devices,
+    ) -> None:
+        super().__init__(name, frame_bytes)
+        self._names, self._devices = (uio, buffer), devices
+        self._part_bytes = -(-frame_bytes // _ALIGNMENT) * _ALIGNMENT
+        self._opened: tuple[Registers, Buffer] | None = None
+        self._waiting: deque[bytes] = deque()
+        self._sends = False
+        # The part that the DMA writes.
+        self._written = 0
+
+    def open(self) -> None:
+        self.close()
+        self._waiting.clear()
+        self._sends = False
+        self._opened = self._devices(*self._names)
+        try:
+            self._check_sizes(*self._opened)
+            self._start(self._opened[0])
+            self._receive_into(1)
+            self._opened[0].take_interrupt()
+            self._opened[0].enable_interrupt()
+        except BoardError:
+            self.close()
+            raise
+
+    def _check_sizes(self, registers: Registers, buffer: Buffer) -> None:
+        needed = 3 * self._part_bytes
+        if buffer.size < needed:
+            raise BoardError(
+                f"'{buffer.name}' has {buffer.size} bytes, and {needed} are needed: 3 buffers for "
+                f"frames of up to {self.frame_bytes} bytes"
+            )
+        bits = registers.tree_value(_LENGTH_BITS)
+        if bits is not None and self._most() >> bits:
+            raise BoardError(
+                f"the DMA has lengths of {bits} bits, up to {(1 << bits) - 1} bytes, and frames "
+                f"have up to {self.frame_bytes}; widen its buffer length register, or give the "
+                "link smaller 'buffer_bytes'"
+            )
+
+    def _most(self) -> int:
+        assert self.frame_bytes is not None
+        return self.frame_bytes
+
+    def _start(self, registers: Registers) -> None:
+        """Reset the DMA, and let both channels run."""
+        # A reset of one channel resets both.
+        registers.write(_AT["MM2S"] + _DMACR, _RESET)
+        if not _becomes(lambda: not registers.read(_AT["MM2S"] + _DMACR) & _RESET):
+            raise BoardError("the reset of the DMA does not end; does its clock run?")
+        for channel, at in _AT.items():
+            control, status = registers.read(at + _DMACR), registers.read(at + _DMASR)
+            if control & (_RS | _ALWAYS_1 | _RESET) != _ALWAYS_1 or not status & _HALTED:
+                raise BoardError(
+                    f"'{self._names[0]}' is no AXI DMA with a channel {channel}: its DMACR is "
+                    f"{control:#010x} after a reset, and its DMASR {status:#010x}"
+                )
+            if status & _SG_INCLUDED:
+                raise BoardError("the DMA has a scatter-gather engine, which has to be left out")
+            registers.write(at + _DMACR, _RS | _IOC_IRQ | _ERR_IRQ)
+            if not _becomes(partial(_is_running, registers, at)):
+                raise BoardError(f"{channel} of the DMA does not start")
+
+    def fileno(self) -> int:
+        return self._there()[0].fileno()
+
+    @property
+    def has_room(self) -> bool:
+        return sum(map(len, self._waiting)) < _ROOM_BYTES
+
+    def send(self, frames: Sequence[bytes]) -> bool:
+        self._there()
+        self._waiting += frames
+        self._send_next()
+        return True
+
+    def receive(self) -> list[bytes]:
+        registers, frames = self._there()[0], []
+        registers.take_interrupt()
+        for _ in range(_MOST_AT_ONCE):
+            if not self._has_completed("S2MM"):
+                break
+            frames.append(self._received())
+        self._send_next()
+        registers.enable_interrupt()
+        return frames
+
+    def close(self) -> None:
+        if self._opened is None:
+            return
+        (registers, buffer), self._opened = self._opened, None
+        # The DMA must not write into memory that others may use.
+        registers.write(_AT["MM2S"] + _DMACR, _RESET)
+        registers.close()
+        buffer.close()
+
+    def _there(self) -> tuple[Registers, Buffer]:
+        if self._opened is None:
+            raise BoardError(f"{self.name} is closed")
+        return self._opened
+
+    def _has_completed(self, channel: Channel) -> bool:
+        """Return whether a transfer has completed, once.
+
+        Raises
+        ------
+        BoardError
+            If the channel has stopped.
+        """
+        registers, at = self._there()[0], _AT[channel] + _DMASR
+        status = registers.read(at)
+        problems = [text for bit, text in _ERRORS.items() if status & bit]
+        if problems or status & _HALTED:
+            self.counters["DMA errors"] += 1
+            why = "; ".join(problems) or "its DMASR has no error"
+            raise BoardError(f"{channel} of the DMA has stopped ({why}), and is reset")
+        if status & _IOC_IRQ:
+            registers.write(at, _IOC_IRQ)
+        return bool(status & _IOC_IRQ)
+
+    def _received(self) -> bytes:
+        """Return the frame that has come, after the DMA got the other part."""
+        registers, buffer = self._there()
+        # The DMA has replaced the size of the part by that of the frame.
+        size = min(registers.read(_AT["S2MM"] + _LENGTH), self._most())
+        start = self._written * self._part_bytes
+        self._receive_into(3 - self._written)
+        buffer.to_processor(start, self._part_bytes)
+        return bytes(buffer.data[start : start + size])
+
+    def _receive_into(self, part: int) -> None:
+        self._written = part
+        start = part * self._part_bytes
+        self._there()[1].to_device(start, self._part_bytes, is_written=True)
+        self._transfer("S2MM", start, self._most())
+
+    def _send_next(self) -> None:
+        """Send what waits, if nothing is under way."""
+        buffer = self._there()[1]
+        if self._sends and not self._has_completed("MM2S"):
+            return
+        self._sends = bool(self._waiting)
+        if self._sends:
+            frame = self._waiting.popleft()
+            buffer.data[: len(frame)] = frame
+            size = -(-len(frame) // _ALIGNMENT) * _ALIGNMENT
+            buffer.to_device(0, size, is_written=False)
+            self._transfer("MM2S", 0, len(frame))
+
+    def _transfer(self, channel: Channel, start: int, size: int) -> None:
+        """Begin a transfer: the length, which starts it, is written last."""
+        registers, buffer = self._there()
+        address, at = buffer.address + start, _AT[channel]
+        registers.write(at + _ADDRESS, address & 0xFFFF_FFFF)
+        if high := address >> 32:
+            registers.write(at + _ADDRESS_MSB, high)
+            if registers.read(at + _ADDRESS_MSB) != high:
+                raise BoardError(f"the DMA has too few bits for the address {address:#x}")
+        registers.write(at + _LENGTH, size)
+
+
+def _is_running(registers: Registers, channel: int) -> bool:
+    return not registers.read(channel + _DMASR) & _HALTED
+
+
+def _becomes(condition: Callable[[], bool]) -> bool:
+    """Wait for a moment until a condition holds; return whether it does."""
+    end = time.monotonic() + _WAIT_SECONDS
+    while not (holds := condition()) and time.monotonic() < end:
+        time.sleep(0.001)
+    return holds

@@ -1,0 +1,189 @@
+"""An AXI DMA of Xilinx in direct register mode, after its manual, PG021 (v7.1), in Python.
+
+It is strict: what the manual leaves undefined is an `AssertionError` of the driver.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+__all__ = ["AxiDma"]
+
+RS, RESET, IOC, ERR = 1 << 0, 1 << 2, 1 << 12, 1 << 14
+HALTED, IDLE, SG = 1 << 0, 1 << 1, 1 << 3
+INT_ERR, SLV_ERR, DEC_ERR = 1 << 4, 1 << 5, 1 << 6
+
+
+class Channel:
+    """The registers of a channel. `length` is that of the register, `left` that of a transfer."""
+
+    def __init__(self, dma: AxiDma, is_s2mm: bool) -> None:
+        self.dma, self.is_s2mm = dma, is_s2mm
+        self.reset()
+
+    def reset(self) -> None:
+        # IRQThreshold is 1 after a reset, and bit 1 is always 1.
+        self.control, self.status = 1 << 16 | 1 << 1, HALTED
+        self.address = self.length = 0
+        self.is_busy = False
+
+    @property
+    def interrupt(self) -> bool:
+        return bool(self.status & self.control & (IOC | ERR))
+
+    def read(self, offset: int) -> int:
+        match offset:
+            case 0x00:
+                return self.control
+            case 0x04:
+                return self.status | SG * self.dma.has_sg
+            case 0x18:
+                return self.address & 0xFFFF_FFFF
+            case 0x1C:
+                return self.address >> 32
+            case 0x28:
+                return self.length
+        raise AssertionError(f"offset {offset:#x} is reserved")
+
+    def write(self, offset: int, value: int) -> None:
+        match offset:
+            case 0x00:
+                self._write_control(value)
+            case 0x04:
+                # Interrupts are cleared by writing 1; all else is read only.
+                self.status &= ~(value & (IOC | ERR))
+            case 0x18:
+                self.address = self.address & ~0xFFFF_FFFF | value
+            case 0x1C:
+                high = value & ((1 << max(0, self.dma.address_bits - 32)) - 1)
+                self.address = self.address & 0xFFFF_FFFF | high << 32
+            case 0x28:
+                self._write_length(value)
+            case _:
+                raise AssertionError(f"offset {offset:#x} is reserved")
+
+    def _write_control(self, value: int) -> None:
+        if value & RESET:
+            self.dma.reset()
+            return
+        starts = value & RS and not self.control & RS
+        self.control = value & 0xFFFF_F019 | 1 << 1
+        if starts:
+            # Idle is 0 before the first transfer.
+            self.status &= ~(HALTED | IDLE)
+        elif not value & RS:
+            self._halt()
+
+    def _halt(self) -> None:
+        self.control &= ~RS
+        self.status = self.status & ~IDLE | HALTED
+        self.is_busy = False
+
+    def _write_length(self, value: int) -> None:
+        value &= (1 << self.dma.length_bits) - 1
+        if self.status & HALTED or not value:
+            return
+        assert not self.is_busy, "a transfer is under way"
+        assert self.address % self.dma.bus_bytes == 0, "without DRE, addresses are aligned"
+        self.length, self.is_busy = value, True
+        self.status &= ~IDLE
+
+    def step(self) -> None:
+        """Do what can be done now."""
+        if not self.is_busy:
+            return
+        if self.is_s2mm:
+            if not self.dma.packets:
+                return
+            packet = self.dma.packets.popleft()
+            size, problem = len(packet), INT_ERR if len(packet) > self.length else 0
+        else:
+            packet, size, problem = b"", self.length, 0
+        place = self.dma.memory[self.address - self.dma.base :][:size]
+        if not self.dma.base <= self.address <= self.dma.base + len(self.dma.memory) - size:
+            problem = problem or DEC_ERR
+        problem = problem or self.dma.fails.pop("S2MM" if self.is_s2mm else "MM2S", 0)
+        if problem:
+            self._halt()
+            self.status |= problem | ERR
+            return
+        if self.is_s2mm:
+            place[:] = packet
+            # The size of the buffer is replaced by that of the packet.
+            self.length = size
+        else:
+            self.dma.sink(bytes(place))
+        self.is_busy = False
+        self.status |= IDLE | IOC
+
+
+class AxiDma:
+    """Both channels.
+
+    Parameters
+    ----------
+    memory : memoryview
+        The memory that the DMA sees, from the address `base` on.
+    sink : callable
+        Takes a packet of MM2S.
+
+    Attributes
+    ----------
+    packets : deque of bytes
+        What waits on the stream of S2MM. The DMA takes words before it runs, so a reset loses them.
+    fails : dict of str to int
+        By channel: the error bit of its next transfer.
+    resets : int
+        Resets by software, in which `mm2s_prmry_reset_out_n` and `s2mm_prmry_reset_out_n` are low.
+    """
+
+    def __init__(
+        self,
+        memory: memoryview,
+        base: int,
+        sink: Callable[[bytes], None],
+        *,
+        bus_bytes: int = 8,
+        length_bits: int = 14,
+        address_bits: int = 40,
+        has_sg: bool = False,
+        has_s2mm: bool = True,
+    ) -> None:
+        self.memory, self.base, self.sink, self.bus_bytes = memory, base, sink, bus_bytes
+        self.length_bits, self.address_bits, self.has_sg = length_bits, address_bits, has_sg
+        self.has_s2mm, self.resets = has_s2mm, 0
+        self.packets: deque[bytes] = deque()
+        self.fails: dict[str, int] = {}
+        self.mm2s, self.s2mm = Channel(self, False), Channel(self, True)
+
+    def reset(self) -> None:
+        """Reset the whole engine, as the bit of either channel does."""
+        self.resets += 1
+        self.packets.clear()
+        self.mm2s.reset()
+        self.s2mm.reset()
+
+    @property
+    def interrupt(self) -> bool:
+        """Both interrupts in one line."""
+        return self.mm2s.interrupt or self.s2mm.interrupt
+
+    def read(self, offset: int) -> int:
+        """Read a register on AXI4-Lite."""
+        if offset < 0x30:
+            return self.mm2s.read(offset)
+        return self.s2mm.read(offset - 0x30) if self.has_s2mm else 0
+
+    def write(self, offset: int, value: int) -> None:
+        """Write a register on AXI4-Lite."""
+        assert 0 <= value < 1 << 32
+        if offset < 0x30:
+            self.mm2s.write(offset, value)
+        elif self.has_s2mm:
+            self.s2mm.write(offset - 0x30, value)
+
+    def step(self) -> None:
+        """Do what can be done now."""
+        self.mm2s.step()
+        self.s2mm.step()

@@ -1,0 +1,284 @@
+"""A board through an AXI DMA: the driver against a model of the DMA, with a node behind it."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import socket
+from contextlib import suppress
+
+import pytest
+
+from firm_hdl.node.boards import BoardError
+from firm_hdl.node.boards.devices import DmaBuffer, Uio
+from firm_hdl.node.boards.zynq import ZynqBoard
+from tests.node.accelerators import echo_text
+from tests.node.boards.dma_model import DEC_ERR, INT_ERR, SLV_ERR, AxiDma
+from tests.node.bridge.fakes import FakeGraph, FakeNode, bridge_of, run_until
+from tests.node.samples import read
+
+BUFFER_BYTES = 256
+MEMORY = read(echo_text(link=f"{{kind: axi_dma, buffer_bytes: {BUFFER_BYTES}}}"))
+HEARD = MEMORY.topics[0]
+ADDRESS = 0x1_3000_0000
+
+
+class ModelRegisters:
+    """The registers of a modelled DMA, and its interrupt: a file as UIO has it."""
+
+    def __init__(self, dma, bits=14):
+        self.dma, self.bits = dma, bits
+        self.own, self.other = socket.socketpair()
+        for each in (self.own, self.other):
+            each.setblocking(False)
+        self.is_enabled = False
+
+    def fileno(self):
+        return self.own.fileno()
+
+    def _run(self):
+        self.dma.step()
+        if self.is_enabled and self.dma.interrupt:
+            # UIO disables the interrupt until it is enabled again.
+            self.is_enabled = False
+            self.other.send(bytes(4))
+
+    def read(self, offset):
+        self._run()
+        return self.dma.read(offset)
+
+    def write(self, offset, value):
+        self.dma.write(offset, value)
+        self._run()
+
+    def take_interrupt(self):
+        with suppress(BlockingIOError):
+            self.own.recv(4)
+
+    def enable_interrupt(self):
+        self.is_enabled = True
+        self._run()
+
+    def tree_value(self, name):
+        return {"xlnx,sg-length-width": self.bits}.get(name)
+
+    def close(self):
+        self.own.close()
+        self.other.close()
+
+
+class CachedBuffer:
+    """A buffer whose caches are not coherent: `data` is what the processor sees."""
+
+    name = "udmabuf0"
+
+    def __init__(self, size=4096, address=ADDRESS):
+        self.address, self.size = address, size
+        self.memory, self.data = (memoryview(bytearray(size)) for _ in range(2))
+
+    def to_device(self, offset, size, *, is_written):
+        assert offset % 64 == size % 64 == 0
+        part = slice(offset, offset + size)
+        if not is_written:
+            self.memory[part] = self.data[part]
+
+    def to_processor(self, offset, size):
+        assert offset % 64 == size % 64 == 0
+        self.data[offset : offset + size] = self.memory[offset : offset + size]
+
+    def close(self):
+        pass
+
+
+class Chip:
+    """A DMA and a buffer, whose devices a board opens; `node` takes frames and returns others."""
+
+    def __init__(self, node=None, bits=14, size=4096, address=ADDRESS, **parameters):
+        self.node = node or FakeNode(MEMORY.fingerprint)
+        self.bits, self.buffer = bits, CachedBuffer(size, address)
+        self.dma = AxiDma(self.buffer.memory, address, self.take, **parameters)
+        self.opened = []
+
+    def take(self, frame):
+        self.dma.packets += self.node.take(frame)
+
+    def open(self, uio, buffer):
+        self.opened.append((uio, buffer))
+        return ModelRegisters(self.dma, self.bits), self.buffer
+
+    def board(self):
+        name = "zynq://uio0/udmabuf0"
+        return ZynqBoard(name, "uio0", "udmabuf0", BUFFER_BYTES, self.open)
+
+
+@pytest.fixture
+def chip():
+    return Chip()
+
+
+def bridged(chip):
+    """Return a bridge to a chip, which is ready, and what it says."""
+    graph = FakeGraph()
+    made, said = bridge_of(chip.board(), graph, MEMORY)
+    assert run_until(made, lambda: graph.opened, 10), said
+    return made, said
+
+
+def test_messages_go_through_memory(chip):
+    made, _ = bridged(chip)
+    texts = [bytes([n]) * (n * 37 % 240) for n in range(100)]
+    for text in texts:
+        made.graph.say(HEARD, text)
+    assert run_until(made, lambda: len(made.graph.got) == 100, 10)
+    made.run(seconds=0)
+    assert [packet for _, packet in made.graph.got] == texts and made.side.has_read_last
+    assert not made.counters.dropped and not made.side.on_the_way and made.side.restarts == 0
+    # The DMA was reset at the end, so it writes no memory any more.
+    assert chip.opened == [("uio0", "udmabuf0")] and chip.dma.resets == 2
+
+
+@pytest.mark.parametrize(
+    ("channel", "bit", "text"),
+    [
+        ("MM2S", DEC_ERR, "MM2S of the DMA has stopped (DMADecErr: no memory has this address)"),
+        ("MM2S", SLV_ERR, "MM2S of the DMA has stopped (DMASlvErr: "),
+        ("S2MM", DEC_ERR, "S2MM of the DMA has stopped (DMADecErr: "),
+        ("S2MM", SLV_ERR, "S2MM of the DMA has stopped (DMASlvErr: "),
+        ("S2MM", INT_ERR, "S2MM of the DMA has stopped (DMAIntErr: a frame was longer than"),
+    ],
+)
+def test_each_error_of_the_dma_is_said_counted_and_survived(chip, channel, bit, text):
+    made, said = bridged(chip)
+    if bit == INT_ERR:
+        chip.dma.packets.append(bytes(BUFFER_BYTES + 1))
+    else:
+        chip.dma.fails[channel] = bit
+    made.graph.say(HEARD, b"lost")
+    assert run_until(made, lambda: made.side.restarts == 1 and made.side.is_ready, 10), said
+    assert any(text in line for line in said), said
+    made.graph.say(HEARD, b"again")
+    assert run_until(made, lambda: made.graph.got and made.graph.got[-1][1] == b"again", 10)
+    made.run(seconds=0)
+    assert [packet for _, packet in made.graph.got] == [b"again"]
+    assert made.counters.dropped.total() == 1 and made.side.on_the_way["DMA errors"] == 1
+
+
+@pytest.mark.parametrize(
+    ("parameters", "text"),
+    [
+        ({"size": 767}, "'udmabuf0' has 767 bytes, and 768 are needed: 3 buffers for frames of up"),
+        ({"bits": 8}, "the DMA has lengths of 8 bits, up to 255 bytes, and frames have up to 256"),
+        ({"has_sg": True}, "the DMA has a scatter-gather engine, which has to be left out"),
+        ({"has_s2mm": False}, "'uio0' is no AXI DMA with a channel S2MM: its DMACR is 0x00000000"),
+        ({"address_bits": 32}, "the DMA has too few bits for the address 0x130000100"),
+    ],
+)
+def test_a_dma_that_does_not_fit_is_an_error(parameters, text):
+    with pytest.raises(BoardError, match=re.escape(text)):
+        Chip(**parameters).board().open()
+
+
+def test_a_dma_without_a_clock_is_an_error(chip):
+    chip.dma.read = lambda offset: 0x0001_0006
+    with pytest.raises(BoardError, match="the reset of the DMA does not end; does its clock run"):
+        chip.board().open()
+
+
+def test_a_node_that_takes_nothing_fills_the_board(chip):
+    board = chip.board()
+    board.open()
+    chip.dma.mm2s.step = lambda: None
+    assert board.has_room
+    for _ in range(300):
+        board.send([bytes(BUFFER_BYTES)])
+    assert not board.has_room and board.receive() == []
+    board.close()
+
+
+@pytest.fixture
+def system(tmp_path):
+    """Return a root with the devices of a DMA and of a buffer, as far as files can be devices."""
+    files = {
+        "dev/uio3": bytes(4096),
+        "dev/udmabuf0": bytes(1024),
+        "sys/class/uio/uio3/name": b"dma\n",
+        "sys/class/uio/uio3/maps/map0/size": b"0x0000000000001000\n",
+        "sys/class/uio/uio3/device/of_node/xlnx,sg-length-width": b"\0\0\0\x0e",
+        "sys/class/u-dma-buf/udmabuf0/size": b"1024\n",
+        "sys/class/u-dma-buf/udmabuf0/phys_addr": b"0x0000000070400000\n",
+        "sys/class/u-dma-buf/udmabuf0/dma_coherent": b"0\n",
+        "sys/class/u-dma-buf/udmabuf0/sync_for_cpu": b"",
+        "sys/class/u-dma-buf/udmabuf0/sync_for_device": b"",
+    }
+    for name, content in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["uio3", "dma"])
+def test_registers_of_uio(system, name):
+    uio = Uio(name, system)
+    uio.write(0x34, 0x1234_5678)
+    assert uio.read(0x34) == 0x1234_5678
+    assert (system / "dev/uio3").read_bytes()[0x34:0x38] == (0x1234_5678).to_bytes(4, "little")
+    assert uio.tree_value("xlnx,sg-length-width") == 14 and uio.tree_value("other") is None
+    # The kernel's "Userspace I/O HOWTO": a read gives 32 bits, and writing 1 enables interrupts.
+    os.lseek(uio.fileno(), 0, os.SEEK_SET)
+    uio.enable_interrupt()
+    assert (system / "dev/uio3").read_bytes()[:4] == b"\1\0\0\0"
+    uio.take_interrupt()
+    assert os.lseek(uio.fileno(), 0, os.SEEK_CUR) == 8
+    with pytest.raises(BoardError, match="uio3' is used by another program"):
+        Uio(name, system)
+    uio.close()
+    Uio(name, system).close()
+
+
+def test_a_buffer_and_its_caches(system):
+    """The number is that of the page of u-dma-buf: offset, and size | direction << 2 | 1."""
+    folder = system / "sys/class/u-dma-buf/udmabuf0"
+    buffer = DmaBuffer("udmabuf0", system)
+    assert (buffer.address, buffer.size, len(buffer.data)) == (0x7040_0000, 1024, 1024)
+    buffer.data[64:67] = b"abc"
+    buffer.to_device(64, 128, is_written=False)
+    assert (folder / "sync_for_device").read_text() == "0x0000004000000085"
+    buffer.to_device(256, 256, is_written=True)
+    assert (folder / "sync_for_device").read_text() == "0x0000010000000109"
+    buffer.to_processor(256, 256)
+    assert (folder / "sync_for_cpu").read_text() == "0x0000010000000109"
+    buffer.close()
+    assert (system / "dev/udmabuf0").read_bytes()[64:67] == b"abc"
+    (folder / "dma_coherent").write_text("1\n")
+    (folder / "sync_for_cpu").write_text("")
+    buffer = DmaBuffer("udmabuf0", system)
+    buffer.to_processor(256, 256)
+    assert (folder / "sync_for_cpu").read_text() == ""
+    buffer.close()
+
+
+def test_devices_that_are_missing_or_closed_to_us(system, monkeypatch):
+    def says(text, make):
+        with pytest.raises(BoardError, match=re.escape(text)):
+            make()
+
+    says("there is no UIO device 'uio0'; there is uio3 (dma)", lambda: Uio("uio0", system))
+    says("cannot read", lambda: DmaBuffer("udmabuf1", system))
+    (system / "sys/class/u-dma-buf/udmabuf0/size").write_text("many\n")
+    says("udmabuf0/size' has no number", lambda: DmaBuffer("udmabuf0", system))
+    (system / "sys/class/u-dma-buf/udmabuf0/size").write_text("2048\n")
+    says("cannot map", lambda: DmaBuffer("udmabuf0", system))
+    (system / "sys/class/uio/uio3/maps/map0/size").write_text("0x2000\n")
+    says("cannot map the registers of", lambda: Uio("uio3", system))
+    (system / "dev/uio3").unlink()
+    says("No such file or directory", lambda: Uio("uio3", system))
+    (system / "dev/uio3").symlink_to("uio3")
+    says("cannot open", lambda: Uio("uio3", system))
+    says("there is no UIO device 'uio0'; there is none", lambda: Uio("uio0", system / "none"))
+
+    def refuse(*_):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr(os, "open", refuse)
+    says("dev/uio3': Permission denied", lambda: Uio("uio3", system))

@@ -1,0 +1,201 @@
+# amaranth: UnusedElaboratable=no
+"""The whole chain: bridge, driver, model of the DMA, and a node's gateware with its link."""
+
+from __future__ import annotations
+
+import os
+import random
+import struct
+from itertools import product
+
+import pytest
+
+from firm_hdl.node import Node
+from firm_hdl.node.boards.zynq import ZynqBoard
+from firm_hdl.sim.fast import FastSimulation
+from tests.node.boards.dma_model import DEC_ERR, INT_ERR, SLV_ERR, AxiDma
+from tests.node.boards.test_zynq import ADDRESS, CachedBuffer, ModelRegisters
+from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
+from tests.node.samples import read
+from tests.node.test_node import string
+from tests.node.traffic import packets_of, pieces_of
+
+_TEXT = """\
+node: chip
+distro: jazzy
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /imu: {type: sensor_msgs/msg/Imu, memory_bytes: 2048}
+  /large: {type: LARGE}
+publish:
+  /imu_back: {type: sensor_msgs/msg/Imu, memory_bytes: 2048}
+  /large_back: {type: LARGE}
+"""
+
+
+_SMALL = """\
+node: chip
+distro: jazzy
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /heard: {type: geometry_msgs/msg/Vector3}
+publish:
+  /said: {type: geometry_msgs/msg/Vector3}
+"""
+
+
+class Fabric(ModelRegisters):
+    """The registers of a DMA in front of a node in simulation, which runs with each access."""
+
+    def __init__(self, chip):
+        super().__init__(chip.dma, 16)
+        self.chip, self.resets = chip, chip.dma.resets
+        # Time passes here only, so a bridge must never sleep.
+        self.readable, self.writable = os.pipe()
+        os.write(self.writable, b"x")
+
+    def fileno(self):
+        return self.readable
+
+    def take_interrupt(self):
+        super().take_interrupt()
+        self.chip.run()
+
+    def close(self):
+        super().close()
+        os.close(self.readable)
+        os.close(self.writable)
+
+
+class SimulatedChip:
+    """A node with the link `axi_dma` in simulation, a DMA, and a buffer without coherent caches."""
+
+    def __init__(self, description, engine="amaranth", cycles=150):
+        self.bus, self.cycles = description.bus_bytes, cycles
+        self.frame_bytes = description.link.buffer_bytes
+        self.sim = FastSimulation(Node(description), engine=engine, options=["-O1"])
+        self.rng, self.resets = random.Random(1), 0
+        self.buffer = CachedBuffer(1 << 18)
+        self.dma = AxiDma(self.buffer.memory, ADDRESS, self.take, length_bits=16)
+
+    def take(self, frame):
+        """Send a frame of MM2S, gathered from pieces as a driver with scatter-gather does it."""
+        self.sim.send("link.pieces_in", pieces_of(frame, self.bus, self.rng))
+
+    def run(self):
+        if self.resets != self.dma.resets:
+            self.resets = self.dma.resets
+            for level in (0, 1):
+                self.sim.set("link.mm2s_aresetn", level)
+                self.sim.set("link.s2mm_aresetn", level)
+                self.sim.run(16)
+            # What came out before the end of the reset is lost.
+            self.sim.receive_packets("link.frames_out")
+        self.sim.run(self.cycles)
+        self.dma.packets += self.sim.receive_packets("link.frames_out")
+        self.dma.step()
+
+    def board(self):
+        return ZynqBoard(
+            "zynq://uio0/udmabuf0",
+            "uio0",
+            "udmabuf0",
+            self.frame_bytes,
+            lambda *_: (Fabric(self), self.buffer),
+        )
+
+
+def ready(description, **options):
+    """Return a chip, and a bridge to it, which is ready, and what it says."""
+    chip = SimulatedChip(description, **options)
+    board = chip.board()
+    # Amaranth's simulator takes its time.
+    board.silent_seconds = board.repeat_seconds = 60.0
+    made, said = bridge_of(board, FakeGraph(), description)
+    assert run_until(made, lambda: made.graph.opened, 120), said
+    return chip, made, said
+
+
+def fail(chip, made, said, channel, bit, topic, packet):
+    """Let a transfer fail, which ends the board and starts it again; then a message passes."""
+    restarts = made.side.restarts + 1
+    chip.dma.fails[channel] = bit
+    made.graph.say(topic, packet)
+    assert run_until(made, lambda: made.side.restarts == restarts, 120), said
+    assert run_until(made, lambda: made.side.is_ready, 120), said
+    made.graph.got.clear()
+    made.graph.say(topic, packet)
+    assert run_until(made, lambda: len(made.graph.got) == 1, 120), said
+    assert made.graph.got[0][1] == packet and made.counters.dropped.total() >= restarts
+    assert made.side.on_the_way["DMA errors"] == restarts
+
+
+def test_messages_and_an_error_go_through_driver_dma_and_gateware():
+    """A message has 28 bytes, four beats, and leaves the node in two buffers."""
+    description = read(_SMALL, link="{kind: axi_dma, buffer_bytes: 32}", clock_mhz="1")
+    chip, made, said = ready(description, cycles=60)
+    topic = description.topics[0]
+    sent = packets_of(topic.store("in").message, 3)
+    made.graph.say(topic, *sent)
+    assert run_until(made, lambda: len(made.graph.got) == 3, 120), said
+    assert [packet for _, packet in made.graph.got] == sent
+    assert not made.counters.dropped and not made.side.on_the_way
+    fail(chip, made, said, "S2MM", DEC_ERR, topic, sent[0])
+    made.close()
+    chip.sim.close()
+
+
+@pytest.mark.thorough
+def test_imus_long_texts_and_each_error():
+    text = _TEXT.replace("LARGE", "std_msgs/msg/String, memory_bytes: 2048")
+    description = read(text, link="{kind: axi_dma, buffer_bytes: 256}", clock_mhz="1")
+    imu, large, *_ = description.topics
+    chip, made, said = ready(description)
+    imus = packets_of(imu.store("in").message, 5, most=600)
+    # In one frame, and in up to five.
+    texts = [string("x" * size) for size in (0, 230, 240, 1100)]
+    made.graph.say(imu, *imus)
+    made.graph.say(large, *texts)
+    assert run_until(made, lambda: len(made.graph.got) == 9, 120), said
+    assert [packet for name, packet in made.graph.got if name == "/imu_back"] == imus
+    assert [packet for name, packet in made.graph.got if name == "/large_back"] == texts
+    assert not made.counters.dropped and not made.side.on_the_way
+    for channel, bit in [*product(("MM2S", "S2MM"), (SLV_ERR, DEC_ERR)), ("S2MM", INT_ERR)]:
+        fail(chip, made, said, channel, bit, large, texts[1])
+    made.close()
+    chip.sim.close()
+
+
+@pytest.mark.thorough
+def test_a_thousand_imus_and_a_hundred_clouds_lose_nothing():
+    """Subscriptions wait, and what has no room in the chip waits in the bridge."""
+    large = "sensor_msgs/msg/PointCloud2, memory_bytes: 524288"
+    text = _TEXT.replace("{type: LARGE}", f"{{type: {large}, when_full: wait}}")
+    text = text.replace("memory_bytes: 2048}", "memory_bytes: 2048, when_full: wait}")
+    description = read(text, link="{kind: axi_dma, buffer_bytes: 65520}")
+    imu, cloud, *_ = description.topics
+    chip, made, said = ready(description, engine="auto", cycles=4000)
+    imus = packets_of(imu.store("in").message, 1000, most=1000)
+    clouds = [cloud_packet(number) for number in range(100)]
+    for number, packet in enumerate(imus):
+        made.graph.say(imu, packet)
+        if number % 10 == 0:
+            made.graph.say(cloud, clouds[number // 10])
+        # The next one comes when this one is back, as a queue may be full.
+        count = number + 1 + number // 10 + 1
+        assert run_until(made, lambda n=count: len(made.graph.got) == n, 120), said
+    made.run(seconds=0)
+    chip.sim.close()
+    assert [packet for name, packet in made.graph.got if name == "/imu_back"] == imus
+    assert [packet for name, packet in made.graph.got if name == "/large_back"] == clouds
+    assert not made.counters.dropped and not made.side.on_the_way and made.side.has_read_last
+    assert not made.side.drops()
+
+
+def cloud_packet(number):
+    """Return a serialized cloud with 300,000 bytes of points."""
+    data = random.Random(number).randbytes(300_000)
+    head = b"\0\1\0\0" + bytes(8) + b"\1\0\0\0" + bytes(4)
+    # Height, width, no fields; whether big-endian; point_step, row_step; data; whether dense.
+    sizes = struct.pack("<IIIB3xIII", 1, 30_000, 0, 0, 10, 300_000, len(data))
+    return head + sizes + data + b"\1"
