@@ -122,7 +122,11 @@ class Counter:
             down.eq(any_of(self._downs)),
             keeps.eq(~loads & ~any_of([load.on for load in self._defaults])),
         ]
-        cases = [*self._loads, *(replace(each, on=each.on & ~loads) for each in self._defaults)]
+        preloads = [
+            replace(each, on=named(m, f"{self.name}_preloads_{k}", each.on & ~loads))
+            for k, each in enumerate(self._defaults)
+        ]
+        cases = [*self._loads, *preloads]
         last = [(each.on, each.last) for each in cases]
         next_is_last = self._next_is_last(m, loads)
         stays_last = named(m, f"{self.name}_last_unless_loaded", Mux(down, next_is_last, self.last))
@@ -130,7 +134,7 @@ class Counter:
             self.pending.eq(keeps & down),
             self.last.eq(pick([(keeps, stays_last), *last], 1)),
         ]
-        self._load_value(m, loads)
+        self._load_value(m, loads, preloads)
 
     def _next_is_last(self, m: Module, loads: Value) -> Value:
         """Return whether one is left after the counter has counted down by one."""
@@ -162,19 +166,20 @@ class Counter:
         ]
         return Mux(fresh, second, by_value)
 
-    def _load_value(self, m: Module, loads: Value) -> None:
+    def _load_value(self, m: Module, loads: Value, preloads: list[_Load]) -> None:
         """Add the logic that loads or decrements the value."""
         value = self.value
         cases = list(self._loads)
-        for k, each in enumerate(self._defaults):
+        for k, each in enumerate(preloads):
             on = each.on
             if each.double is not None:
                 on = Signal(
                     name=f"{self.name}_comes_{k}",
                     attrs={REMARK: "a length that was looked up in the cycle before is loaded"},
                 )
-                m.d.sync += on.eq(each.on & ~loads)
-            cases.append(replace(each, on=on & ~loads))
+                m.d.sync += on.eq(each.on)
+                on = named(m, f"{self.name}_takes_{k}", on & ~loads)
+            cases.append(replace(each, on=on))
         keeps = named(m, f"{self.name}_value_keeps", ~any_of([each.on for each in cases]))
         counted = (value - self.pending)[: len(value)]
         m.d.sync += value.eq(

@@ -297,7 +297,12 @@ class _Words:
         """Store a word, of which so many bytes are good."""
         bus = self.plan.bus_bytes
         self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
-        self.good[name] = Signal(bus, name=f"{name}_good", reset_less=True)
+        self.good[name] = Signal(
+            bus,
+            name=f"{name}_good",
+            reset_less=True,
+            attrs={REMARK: "bit k: byte k of the word is good; else its value is written as 0"},
+        )
         if any(leaf.kind == "length" for leaf in self.plan.leaves):
             self.good_of_length[name] = named(
                 m,

@@ -232,5 +232,10 @@ def sum_of_three(m: Module, name: str, a: Value, b: Value, c: Value) -> Value:
     """
     width = len(a)
     b, c = (Cat(x, x[-1].replicate(width))[:width] for x in (b, c))
-    carry = named(m, f"{name}_carries", ((a & b) | (a & c) | (b & c))[:-1])
+    carry = named(
+        m,
+        f"{name}_carries",
+        ((a & b) | (a & c) | (b & c))[:-1],
+        "of the sum of three numbers, bit by bit; one addition is left",
+    )
     return named(m, f"{name}_without_carries", a ^ b ^ c) + Cat(Const(0, 1), carry)

@@ -9,6 +9,7 @@ from textwrap import shorten
 from typing import Literal, TypeAlias
 
 from firm_hdl.names.attributes import REMARK
+from firm_hdl.rtlil.evaluate import constant
 from firm_hdl.rtlil.fields import base_of_field
 from firm_hdl.rtlil.ir import (
     Assign,
@@ -494,8 +495,16 @@ def _is_register(cell: Cell) -> bool:
 def _either(graph: Graph, cell: Cell) -> str | None:
     """Name a disjunction of a few bits after them, without the word with which all of them begin.
 
-    So the condition "in step a or in step b" is `step_a_or_b`.
+    So the condition "in step a or in step b" is `step_a_or_b`. A signal or 0 is `signal_if_bit`.
     """
+    if cell.kind == "$mux":
+        value, test = only(cell.ports["B"]), only(cell.ports["S"])
+        if value is None or test is None or constant(cell.ports["A"]) != 0:
+            return None
+        if value.width != graph.width[value.wire]:
+            return None
+        name = "_if_".join(graph.name_of.get(each.wire, each.wire) for each in (value, test))
+        return name if "$" not in name and len(name) <= _MAX_NAME else None
     if cell.kind not in ("$or", "$reduce_or", "$reduce_bool"):
         return None
     chunks = (*cell.ports["A"], *cell.ports.get("B", ()))
@@ -518,6 +527,11 @@ def _test(graph: Graph, cell: Cell, operators: Mapping[str, Cell]) -> str | None
     """Name a test of some bits of one signal after the signal and its bits."""
     if graph.width[output(cell)] != 1:
         return None
+    part, number = only(cell.ports["A"]), constant(cell.ports.get("B", ()))
+    if cell.kind == "$eq" and part is not None and number is not None:
+        name = graph.name_of.get(part.wire, part.wire)
+        high = part.low + part.width - 1
+        return None if name.startswith("$") else f"{name}_{high}_{part.low}_is_{number}"
     bits: dict[str, tuple[int, int]] = {}
     pending = [cell]
     while pending:

@@ -186,7 +186,10 @@ class Sequencer(wiring.Component):
 
         # First bytes of the two words.
         items_at, map_at = ring.position("items_at"), ring.position("map_at")
-        first_word: Value = Cat(ring.lane(map_at), ring.beat(map_at) - two_word_map)
+        first_beat = named(
+            m, "first_beat_of_map", (ring.beat(map_at) - two_word_map)[: ring.beat_bits]
+        )
+        first_word: Value = Cat(ring.lane(map_at), first_beat)
         # A choice whose condition is a constant would hide the concatenation from the Verilog back
         # end, which gives such vectors a net of their own.
         if not isinstance(walk.takes_rest, Const):
@@ -196,9 +199,9 @@ class Sequencer(wiring.Component):
         # After an error: good bytes of the two words, from the cycle after `new_error` on.
         items_room = Signal(range(bus + 1))
         map_room = Signal(range(bus + 1))
-        map_left = ring.position("map_left")
+        map_left = ring.position("map_left", remark="signed: limit - map_at")
         # limit - map_at = limit + not_last_at + 1 - map_offset, as one sum from registers.
-        to_first = named(m, "map_offset_from_end", 1 - offset)
+        to_first = named(m, "one_less_map_offset", 1 - offset, "1 - map_offset, signed")
         m.d.comb += map_left.eq(
             sum_of_three(m, "map_left", limit, walk.not_last_at, to_first.as_signed())
         )

@@ -297,12 +297,12 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire length_accepted;
   wire allowed;
   wire issue;
+  wire [3:0] first_beat_of_map;
   wire [6:0] map_at;
-  wire [3:0] sub_61;
-  wire [5:0] map_offset_from_end;
-  wire [5:0] map_left_carries;
+  wire [5:0] one_less_map_offset;  // 1 - map_offset, signed
+  wire [5:0] map_left_carries;  // of the sum of three numbers, bit by bit; one addition is left
   wire [6:0] map_left_without_carries;
-  wire [6:0] map_left;
+  wire [6:0] map_left;  // signed: limit - map_at
   wire [3:0] map_room_if_cut;
   wire [6:0] items_left;
   wire [3:0] rest_room_if_cut;
@@ -350,13 +350,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign issue = (drains & orders_ready) | (allowed & orders_ready & bytes_good);
   assign arrival_next = (drains & orders_ready & ends_packet) | (allowed & orders_ready &
       ends_packet & bytes_good);
+  assign first_beat_of_map = map_at[6:3] - {3'd0, two_word_map};
   assign map_at = last_at + {{2{map_offset[4]}}, map_offset};
-  assign sub_61 = map_at[6:3] - {3'd0, two_word_map};
-  assign map_offset_from_end = 6'd1 - {{1{map_offset[4]}}, map_offset};
+  assign one_less_map_offset = 6'd1 - {{1{map_offset[4]}}, map_offset};
   assign map_left_carries = (arrival_limit[5:0] & not_last_at[5:0]) | (arrival_limit[5:0] &
-      map_offset_from_end) | (not_last_at[5:0] & map_offset_from_end);
-  assign map_left_without_carries = arrival_limit ^ not_last_at ^ {map_offset_from_end[5],
-      map_offset_from_end};
+      one_less_map_offset) | (not_last_at[5:0] & one_less_map_offset);
+  assign map_left_without_carries = arrival_limit ^ not_last_at ^ {one_less_map_offset[5],
+      one_less_map_offset};
   assign map_left = map_left_without_carries + {map_left_carries, 1'b0};
   assign map_room_if_cut = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
   assign items_left = arrival_limit - first_at;
@@ -364,7 +364,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign items_room_if_cut = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
       3'd0} : 4'd8) : map_room_if_cut;
   assign bad_drained = bad & drains & orders_ready;
-  assign orders_payload_items_next = sub_61[2:0] + 3'd1;
+  assign orders_payload_items_next = first_beat_of_map[2:0] + 3'd1;
   assign orders_payload_map_next = orders_payload_map_at[5:3] + 3'd1;
   assign orders_payload_items_bytes = (bad && (items_room < 4'd8)) ? items_room : 4'd8;
   assign orders_payload_map_bytes = bad ? map_room : 4'd8;
@@ -494,9 +494,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign orders_payload_map_at = map_at[5:0];
   assign orders_payload = {orders_payload_status, ends_packet, first_at[6:3], 1'b0, length_accepted,
       words_last, 1'b0, orders_payload_map_bytes, orders_payload_items_bytes,
-      orders_payload_map_next, orders_payload_items_next, map_at[5:0], sub_61[2:0], map_at[2:0],
-      at_end, step_angular_x | step_angular_y, step_linear_y | step_linear_z, step_linear_x_2 |
-      step_linear_z | step_angular_y};
+      orders_payload_map_next, orders_payload_items_next, map_at[5:0], first_beat_of_map[2:0],
+      map_at[2:0], at_end, step_angular_x | step_angular_y, step_linear_y | step_linear_z,
+      step_linear_x_2 | step_linear_z | step_angular_y};
 endmodule
 
 // OrderQueue: A queue of two orders, so that `i.ready` is a register.
@@ -634,9 +634,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg length_good = 1'b0;
   reg last = 1'b0;
   reg [63:0] items_word = 64'd0;
-  reg [7:0] items_good = 8'd0;
+  reg [7:0] items_good = 8'd0;  // bit k: byte k of the word is good; else its value is written as 0
   reg [63:0] map_word = 64'd0;
-  reg [7:0] map_good = 8'd0;
+  reg [7:0] map_good = 8'd0;  // bit k: byte k of the word is good; else its value is written as 0
   reg begins_linear_x = 1'b0;
   reg [31:0] carried = 32'd0;
   reg begins_linear_x_2 = 1'b0;

@@ -360,12 +360,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal length_accepted            : std_logic;
   signal allowed                    : std_logic;
   signal issue                      : std_logic;
+  signal first_beat_of_map          : unsigned(3 downto 0);
   signal map_at                     : unsigned(6 downto 0);
-  signal sub_61                     : unsigned(3 downto 0);
-  signal map_offset_from_end        : unsigned(5 downto 0);
+  signal one_less_map_offset        : unsigned(5 downto 0);  -- 1 - map_offset, signed
+  -- of the sum of three numbers, bit by bit; one addition is left
   signal map_left_carries           : unsigned(5 downto 0);
   signal map_left_without_carries   : unsigned(6 downto 0);
-  signal map_left                   : unsigned(6 downto 0);
+  signal map_left                   : unsigned(6 downto 0);  -- signed: limit - map_at
   signal map_room_if_cut            : unsigned(3 downto 0);
   signal items_left                 : unsigned(6 downto 0);
   signal rest_room_if_cut           : unsigned(3 downto 0);
@@ -417,13 +418,13 @@ begin
   issue <= (drains and orders_ready) or (allowed and orders_ready and bytes_good);
   arrival_next <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
       ends_packet and bytes_good);
+  first_beat_of_map <= map_at(6 downto 3) - two_word_map;
   map_at <= last_at + sign_extend(map_offset, 7);
-  sub_61 <= map_at(6 downto 3) - two_word_map;
-  map_offset_from_end <= unsigned'("000001") - sign_extend(map_offset, 6);
+  one_less_map_offset <= unsigned'("000001") - sign_extend(map_offset, 6);
   map_left_carries <= (arrival_limit(5 downto 0) and not_last_at(5 downto 0)) or
-      (arrival_limit(5 downto 0) and map_offset_from_end) or (not_last_at(5 downto 0) and
-      map_offset_from_end);
-  map_left_without_carries <= arrival_limit xor not_last_at xor sign_extend(map_offset_from_end, 7);
+      (arrival_limit(5 downto 0) and one_less_map_offset) or (not_last_at(5 downto 0) and
+      one_less_map_offset);
+  map_left_without_carries <= arrival_limit xor not_last_at xor sign_extend(one_less_map_offset, 7);
   map_left <= map_left_without_carries + unsigned'(map_left_carries & '0');
   map_room_if_cut <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8),
       "1000", map_left(3 downto 0));
@@ -433,7 +434,7 @@ begin
   items_room_if_cut <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
       "000"), 4), "1000") when two_word_map = '1' else map_room_if_cut;
   bad_drained <= bad and drains and orders_ready;
-  orders_payload_items_next <= sub_61(2 downto 0) + 1;
+  orders_payload_items_next <= first_beat_of_map(2 downto 0) + 1;
   orders_payload_map_next <= orders_payload_map_at(5 downto 3) + 1;
   orders_payload_items_bytes <= items_room when bad = '1' and items_room < 8 else "1000";
   orders_payload_map_bytes <= map_room when bad = '1' else "1000";
@@ -568,8 +569,9 @@ begin
   orders_payload <= orders_payload_status & ends_packet & first_at(6 downto 3) & '0' &
       length_accepted & words_last & '0' & orders_payload_map_bytes & orders_payload_items_bytes &
       orders_payload_map_next & orders_payload_items_next & map_at(5 downto 0) &
-      sub_61(2 downto 0) & map_at(2 downto 0) & at_end & (step_angular_x or step_angular_y) &
-      (step_linear_y or step_linear_z) & (step_linear_x_2 or step_linear_z or step_angular_y);
+      first_beat_of_map(2 downto 0) & map_at(2 downto 0) & at_end & (step_angular_x or
+      step_angular_y) & (step_linear_y or step_linear_z) & (step_linear_x_2 or step_linear_z or
+      step_angular_y);
 
 end architecture;
 
@@ -748,8 +750,10 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal length_good               : std_logic := '0';
   signal last                      : std_logic := '0';
   signal items_word                : unsigned(63 downto 0) := (others => '0');
+  -- bit k: byte k of the word is good; else its value is written as 0
   signal items_good                : unsigned(7 downto 0) := (others => '0');
   signal map_word                  : unsigned(63 downto 0) := (others => '0');
+  -- bit k: byte k of the word is good; else its value is written as 0
   signal map_good                  : unsigned(7 downto 0) := (others => '0');
   signal begins_linear_x           : std_logic := '0';
   signal carried                   : unsigned(31 downto 0) := (others => '0');
