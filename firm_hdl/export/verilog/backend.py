@@ -63,9 +63,10 @@ def write(converters: Converters) -> Output:
             section[direction]["template"] = f"{module}.veo"
             files[f"{module}.veo"] = template(direction, instances[direction], header=header)
     if "tools" in converters.options.extras:
-        modules = [module_name(name, each) for each in DIRECTIONS]
-        registers = [module_name(name, each, "registers") for each in converters.registers]
-        files[_WAIVERS] = waivers([*modules, *registers])
+        parts = [(), *([("axis",)] if converters.options.leaf_ports == "axis" else [])]
+        modules = [module_name(name, each, *part) for part in parts for each in DIRECTIONS]
+        modules += [module_name(name, each, "registers") for each in converters.registers]
+        files[_WAIVERS] = waivers(modules)
     return Output(files=files, manifest={"converters": section}, instances=instances)
 
 
