@@ -909,21 +909,25 @@ class Engine(wiring.Component):
         """Answer a writer (8.4.12.2): acknowledge what came, and ask for what is missing."""
         row, assembly = self._row, self.assembly
         with m.State("LISTENS"):
-            missing = Signal(32)
-            m.d.comb += missing.eq(row.end - row.next)
-            is_many, lacks = missing >= 32, row.synced & (missing != 0)
+            missing, most, asked = Signal(32), Signal(6), Signal(6)
+            lacks = row.synced & (missing != 0)
+            m.d.comb += [
+                missing.eq(row.end - row.next),
+                # Fast DDS sends them in one datagram of up to 64 KiB, which may have no room here.
+                most.eq(Mux(row.tries < 5, Const(32, 6) >> row.tries[:3], 1)),
+                asked.eq(Mux(missing < most, missing, most)),
+            ]
             m.d.sync += [
                 self._number.eq(row.next),
-                self._bits.eq(Mux(is_many, 32, missing)),
-                self._bitmap.eq(
-                    ~row.request & ~(Const(0xFFFF_FFFF, 32) >> Mux(is_many, 32, missing[:6]))
-                ),
+                self._bits.eq(asked),
+                self._bitmap.eq(~row.request & ~(Const(0xFFFF_FFFF, 32) >> asked)),
                 self._is_final.eq(row.synced),
             ]
             m.next = "NEXT"
             # Each HEARTBEAT asks for an answer, and each sample that comes again may bring one. So
-            # what was asked for is waited for, or a datagram too many would make ever more of them.
-            is_due = row.ask & (~lacks | (row.timer == 0) | (row.next >= row.base))
+            # several that were asked for are waited for, or they would make ever more of them.
+            waits = lacks & (row.timer != 0) & (missing != 1) & (row.next < row.base)
+            is_due = row.ask & ~waits
             with m.If(is_due & lacks & (row.tries == _MOST_TRIES)):
                 # Such as a sample that is larger than the memory: it will never come.
                 m.d.comb += self.lost.eq(1)
@@ -936,10 +940,13 @@ class Engine(wiring.Component):
             with m.Elif(is_due):
                 m.d.sync += [
                     row.ask.eq(0),
-                    row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
-                    row.tries.eq(row.tries + lacks),
-                    row.base.eq(row.next + Mux(is_many, 32, missing[:6])),
+                    row.base.eq(row.next + asked),
                 ]
+                with m.If(row.timer == 0):
+                    m.d.sync += [
+                        row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
+                        row.tries.eq(row.tries + lacks),
+                    ]
                 self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
                 with m.If(lacks & assembly.holds):
                     m.d.sync += [
