@@ -77,7 +77,7 @@ class Ip:
     table : RegisterMap or None
         The registers behind ``s_axi``, if there are any.
     defaults : mapping of str to int
-        Values of inputs that are not connected; all others are 0, and TREADY is 1.
+        Values of inputs that are not connected, beside those that AXI has. All others are 0.
     """
 
     name: str
@@ -201,18 +201,18 @@ def ip_files(ip: Ip) -> dict[str, str]:
     """
     buses = buses_of(ip.ports)
     xgui = f"{ip.name}_v{ip.version.replace('.', '_')}.tcl"
-    # All that leaves a stream that is not connected is taken.
-    ready = {
-        bus.ports["TREADY"]: 1 for bus in buses if bus.mode == "master" and "TREADY" in bus.ports
+    values: dict[str, Any] = {
+        "ip": ip,
+        "buses": buses,
+        "table": ip.table,
+        "defaults": {**_defaults(ip, buses), **ip.defaults},
     }
-    values: dict[str, Any] = {"ip": ip, "buses": buses, "table": ip.table}
     component = render(
         "packaging/component.xml",
         **values,
         views=_VIEWS,
         families=_FAMILIES,
         xgui=xgui,
-        defaults={**ready, **ip.defaults},
     )
     script = render(
         "packaging/vivado_ip.tcl",
@@ -232,6 +232,21 @@ def ip_files(ip: Ip) -> dict[str, str]:
         f"{here}/package.tcl": script,
         **{f"{here}/{file}": text for file, text in ip.files.items()},
         f"{here}/xgui/{xgui}": _XGUI,
+    }
+
+
+def _defaults(ip: Ip, buses: Sequence[Bus]) -> dict[str, int]:
+    """Return the values of AXI's inputs that the other side does not have: all ones.
+
+    TREADY and TKEEP are those of IHI 0051, "Default value signaling", so what leaves a stream that
+    is not connected is taken; WSTRB is that of IHI 0022. TLAST has no default.
+    """
+    signals = ("TREADY", "TKEEP", "WSTRB")
+    ones = {bus.ports[signal] for bus in buses for signal in signals if signal in bus.ports}
+    return {
+        port.name: (1 << port.width) - 1
+        for port in ip.ports
+        if port.direction == "in" and port.name in ones
     }
 
 
@@ -265,7 +280,7 @@ def write(converters: Converters, texts: Mapping[str, str]) -> Output:
                 ports=ports,
                 title=f"{way.capitalize()} of {message}",
                 description=f"{_WHAT[way]} of {message}, on a bus of {plan.bus_bytes} bytes.",
-                defaults=_tied(plan, ports) if way == "serializer" else {},
+                defaults=_tied(plan, ports, way),
             )
         )
     for way, layout in converters.registers.items():
@@ -292,16 +307,18 @@ _WHAT: dict[Direction, str] = {
 }
 
 
-def _tied(plan: Plan, ports: Sequence[Any]) -> dict[str, int]:
-    """Return what makes fields 0 or empty whose leaves are not connected."""
-    inner = {port.name: port for port in ports_of(plan, "serializer") if port.leaf is not None}
+def _tied(plan: Plan, ports: Sequence[Any], way: Direction) -> dict[str, int]:
+    """Return what takes leaves that are not connected, or what makes their fields 0 or empty."""
+    inner = {port.name: port for port in ports_of(plan, way) if port.leaf is not None}
     found = {}
     for port in ports:
         plain = inner.get(getattr(port, "inner", port.name))
         if plain is not None and plain.leaf is not None:
             kind = plan.leaves[plain.leaf].kind
-            is_one = plain.member == "valid" or (plain.member == "data" and kind == "trigger")
-            if is_one and kind != "items":
+            is_one = plain.member == "ready" or (
+                kind != "items" and (plain.member == "valid" or kind == "trigger")
+            )
+            if is_one and port.direction == "in":
                 found[port.name] = 1
     return found
 

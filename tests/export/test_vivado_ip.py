@@ -62,7 +62,7 @@ def buses(component):
 
 
 def recorded(folder, work):
-    """Run the script, and return what it says of each bus, and the addresses of registers."""
+    """Run the script; return what it says of each bus, of registers, and of open inputs."""
     work.mkdir(exist_ok=True)
     (work / "run.tcl").write_text(RECORDER + f"source {{{folder / 'package.tcl'}}}\n")
     command = [tclsh(), "run.tcl"]
@@ -91,7 +91,19 @@ def recorded(folder, work):
     # A second run replaces nothing.
     again = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
     assert again.returncode == 1 and "exists" in again.stderr
-    return found, offsets
+    defaults = {
+        each.split("/")[-1]: v["driver_value"] for each, v in values.items() if "driver_value" in v
+    }
+    return found, offsets, defaults
+
+
+def default_values(component):
+    """Return what the XML says of inputs that are not connected."""
+    return {
+        texts(port, "name")[0]: value
+        for port in spirit(component, "model/ports/port")
+        for value in texts(port, "wire/driver/defaultValue")
+    }
 
 
 def check_ip(folder, work):
@@ -109,8 +121,9 @@ def check_ip(folder, work):
     read.load(str(file))
     assert read.name == folder.name
     component = ElementTree.parse(file).getroot()
-    found, offsets = recorded(folder, work)
+    found, offsets, defaults = recorded(folder, work)
     assert found == buses(component)
+    assert defaults == default_values(component)
     path = "memoryMaps/memoryMap/addressBlock/register"
     addresses = zip(
         texts(component, f"{path}/name"), texts(component, f"{path}/addressOffset"), strict=True
@@ -176,6 +189,9 @@ def test_converters_are_ip(tmp_path):
         "aclk": ("xilinx.com:signal:clock:1.0", "slave"),
         "aresetn": ("xilinx.com:signal:reset:1.0", "slave"),
     }
+    # Without TKEEP, all bytes of a beat are there.
+    component = ElementTree.parse(built.folder / "ip" / f"{name}_deserializer/component.xml")
+    assert default_values(component.getroot())["s_axis_tkeep"] == "255"
     assert found["m_axis_bytes_items"][2].keys() == {"TDATA", "TLAST", "TVALID", "TREADY"}
     assert found["aclk"][3] == {
         "ASSOCIATED_BUSIF": ":".join(each for each in found if "axis" in each),
@@ -185,19 +201,16 @@ def test_converters_are_ip(tmp_path):
     found, left = check_ip(ip, tmp_path / "tx")
     assert found["s_axis_status"][1] == "slave" and not left
     # A field that is not connected is 0 or empty, and what leaves is taken.
-    component = ElementTree.parse(ip / "component.xml").getroot()
-    ones = {
-        texts(port, "name")[0]
-        for port in spirit(component, "model/ports/port")
-        if texts(port, "wire/driver/defaultValue")
-    }
-    assert ones == {
-        *(
-            f"s_axis_{each}_tvalid"
-            for each in ("status", "range_field", "status_field", "m_axis_length")
-        ),
-        *("m_axis_tready", "m_axis_status_tready"),
-    }
+    assert default_values(ElementTree.parse(ip / "component.xml").getroot()) == dict.fromkeys(
+        [
+            *(
+                f"s_axis_{each}_tvalid"
+                for each in ("status", "range_field", "status_field", "m_axis_length")
+            ),
+            *("m_axis_tready", "m_axis_status_tready"),
+        ],
+        "1",
+    )
     for each in ip.parent.iterdir():
         files = [str(file) for file in each.glob("*.v")]
         subprocess.run(["iverilog", "-g2005", "-Wall", "-t", "null", *files], check=True)
@@ -213,6 +226,15 @@ def test_converters_are_ip(tmp_path):
     assert found["s_axi"][:2] == ("xilinx.com:interface:aximm:1.0", "slave")
     assert found["aclk"][3]["ASSOCIATED_BUSIF"] == "m_axis:s_axi"
     assert found["irq"][1:3] == ("master", {"INTERRUPT": "irq"})
+    # Leaves that are pins are taken, too.
+    (built,) = build(
+        ["test_msgs/msg/T"],
+        tmp_path / "out",
+        library=Library(paths=[tmp_path]),
+        options=Options(ports="flat", ip="vivado"),
+    )
+    component = ElementTree.parse(built.folder / "ip" / f"{name}_deserializer/component.xml")
+    assert default_values(component.getroot()).items() >= {("range_field_ready", "1")}
     # Without the option, all of it goes, with its folders.
     build(
         ["test_msgs/msg/T"],
