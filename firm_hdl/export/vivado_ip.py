@@ -21,7 +21,8 @@ from firm_hdl.export.verilog.backend import converter_axis_ports
 from firm_hdl.plan import Plan
 
 if TYPE_CHECKING:
-    from firm_hdl.registers import RegisterMap
+    from firm_hdl.registers import Register, RegisterMap
+    from firm_hdl.registers.table import Kind
 
 __all__ = ["FOLDER", "Bus", "Ip", "buses_of", "ip_facts", "ip_files", "write"]
 
@@ -47,6 +48,17 @@ proc init_gui { IPINST } {
   ipgui::add_param $IPINST -name "Component_Name"
 }
 """
+
+# IEEE Std 1685-2009, 6.11.9: access, and what a write does if it does not store the value.
+_ACCESS: dict[Kind, tuple[str, str]] = {
+    "constant": ("read-only", ""),
+    "status": ("read-only", ""),
+    "setting": ("read-write", ""),
+    # High for one cycle, and never read: "any write to this field may modify that data".
+    "pulse": ("write-only", "modify"),
+    "unused": ("write-only", ""),
+    "event": ("read-write", "oneToClear"),
+}
 
 _AXIS = ("tdata", "tkeep", "tlast", "tuser", "tdest", "tid", "tvalid", "tready")
 _AXI = (
@@ -205,6 +217,10 @@ def ip_files(ip: Ip) -> dict[str, str]:
         "ip": ip,
         "buses": buses,
         "table": ip.table,
+        "registers": [
+            (each, _access(each), _reset(each)) for each in (ip.table.registers if ip.table else ())
+        ],
+        "field_access": _ACCESS,
         "defaults": {**_defaults(ip, buses), **ip.defaults},
     }
     component = render(
@@ -233,6 +249,18 @@ def ip_files(ip: Ip) -> dict[str, str]:
         **{f"{here}/{file}": text for file, text in ip.files.items()},
         f"{here}/xgui/{xgui}": _XGUI,
     }
+
+
+def _access(register: Register) -> str:
+    found = {_ACCESS[field.kind][0] for field in register.fields}
+    return found.pop() if len(found) == 1 else "read-write"
+
+
+def _reset(register: Register) -> int | None:
+    """Return the value after a reset, unless hardware shows some of it."""
+    if any(field.kind == "status" for field in register.fields):
+        return None
+    return sum(field.reset << field.low for field in register.fields)
 
 
 def _defaults(ip: Ip, buses: Sequence[Bus]) -> dict[str, int]:

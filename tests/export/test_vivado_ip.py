@@ -83,18 +83,47 @@ def recorded(folder, work):
         parameters = {key: v["value"] for key, v in inside.items() if "value" in v}
         assert place["abstraction_type_vlnv"] == place["bus_type_vlnv"].replace(":1.0", "_rtl:1.0")
         found[name] = (place["bus_type_vlnv"], place["interface_mode"], ports, parameters)
-    offsets = {
-        each.split("/")[-1]: v["address_offset"]
-        for each, v in values.items()
-        if "address_offset" in v
-    }
+    registers = {}
+    for place, own in values.items():
+        if "address_offset" in own:
+            registers[place.split("/")[-1]] = (
+                *(own.get(each) for each in ("address_offset", "access", "reset_value")),
+                {
+                    each.split("/")[-1]: (
+                        *(v[key] for key in ("bit_offset", "bit_width", "access")),
+                        v.get("modified_write_value"),
+                    )
+                    for each, v in values.items()
+                    if each.startswith(f"{place}/")
+                },
+            )
     # A second run replaces nothing.
     again = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
     assert again.returncode == 1 and "exists" in again.stderr
     defaults = {
         each.split("/")[-1]: v["driver_value"] for each, v in values.items() if "driver_value" in v
     }
-    return found, offsets, defaults
+    return found, registers, defaults
+
+
+def registers_of(component):
+    """Return what the XML says of each register: address, access, reset, and its fields."""
+
+    def said(node, *paths):
+        return tuple((texts(node, path) or [None])[0] for path in paths)
+
+    return {
+        texts(register, "name")[0]: (
+            *said(register, "addressOffset", "access", "reset/value"),
+            {
+                texts(each, "name")[0]: said(
+                    each, "bitOffset", "bitWidth", "access", "modifiedWriteValue"
+                )
+                for each in spirit(register, "field")
+            },
+        )
+        for register in spirit(component, "memoryMaps/memoryMap/addressBlock/register")
+    }
 
 
 def default_values(component):
@@ -121,14 +150,10 @@ def check_ip(folder, work):
     read.load(str(file))
     assert read.name == folder.name
     component = ElementTree.parse(file).getroot()
-    found, offsets, defaults = recorded(folder, work)
+    found, registers, defaults = recorded(folder, work)
     assert found == buses(component)
     assert defaults == default_values(component)
-    path = "memoryMaps/memoryMap/addressBlock/register"
-    addresses = zip(
-        texts(component, f"{path}/name"), texts(component, f"{path}/addressOffset"), strict=True
-    )
-    assert offsets == dict(addresses)
+    assert registers == registers_of(component)
     for listed in texts(component, "fileSets/fileSet/file/name"):
         assert (folder / listed).is_file()
         assert listed.startswith("xgui") or (work / "packaged" / listed).is_file()
@@ -221,8 +246,22 @@ def test_converters_are_ip(tmp_path):
         f"{name}_deserializer_registers",
         f"{name}_serializer_registers",
     ]
-    found, left = check_ip(ip.with_name(f"{name}_serializer_registers"), tmp_path / "registers")
+    ip = ip.with_name(f"{name}_serializer_registers")
+    found, left = check_ip(ip, tmp_path / "registers")
     assert not left
+    registers = registers_of(ElementTree.parse(ip / "component.xml").getroot())
+    assert registers["id"] == (
+        "0x0",
+        "read-only",
+        str(0x4D524946),
+        {"id": ("0", "32", "read-only", None)},
+    )
+    assert registers["version"][2] == str(1 << 16)
+    assert registers["control"][1:3] == ("write-only", "0")
+    assert registers["control"][3]["latch"] == ("1", "1", "write-only", "modify")
+    assert registers["status"][1:3] == ("read-only", None)
+    assert registers["interrupt_enable"][3]["error"] == ("1", "1", "read-write", None)
+    assert registers["interrupt"][3]["error"] == ("1", "1", "read-write", "oneToClear")
     assert found["s_axi"][:2] == ("xilinx.com:interface:aximm:1.0", "slave")
     assert found["aclk"][3]["ASSOCIATED_BUSIF"] == "m_axis:s_axi"
     assert found["irq"][1:3] == ("master", {"INTERRUPT": "irq"})
