@@ -31,9 +31,14 @@ FOLDER = "ip"
 
 _VENDOR = "firm-hdl"
 
+# As AMD's IP "Mini ISP" (2025) names them; "zynquplus" has the RFSoCs and the Kria, too. An "a" in
+# front is for cars, a "q" for defence, an "l" behind is of low power.
 _FAMILIES = (
-    *("artix7", "kintex7", "spartan7", "virtex7", "zynq", "kintexu", "virtexu"),
-    *("kintexuplus", "virtexuplus", "zynquplus"),
+    *("artix7", "artix7l", "aartix7", "qartix7"),
+    *("kintex7", "kintex7l", "akintex7", "qkintex7", "qkintex7l"),
+    *("spartan7", "aspartan7", "virtex7", "qvirtex7", "zynq", "azynq", "qzynq"),
+    *("kintexu", "virtexu", "artixuplus", "kintexuplus", "spartanuplus"),
+    *("virtexuplus", "virtexuplusHBM", "virtexuplus58g", "zynquplus", "versal"),
 )
 
 _VIEWS = (

@@ -149,6 +149,9 @@ def check_ip(folder, work):
     read = Component()
     read.load(str(file))
     assert read.name == folder.name
+    for family in ("azynq", "artixuplus", "zynquplus", "versal"):
+        assert f'"Production">{family}<' in file.read_text()
+        assert f"{family} Production" in (folder / "package.tcl").read_text()
     component = ElementTree.parse(file).getroot()
     found, registers, defaults = recorded(folder, work)
     assert found == buses(component)
