@@ -21,7 +21,8 @@ from firm_hdl.export.verilog.backend import converter_axis_ports
 from firm_hdl.plan import Plan
 
 if TYPE_CHECKING:
-    from firm_hdl.registers import RegisterMap
+    from firm_hdl.registers import Register, RegisterMap
+    from firm_hdl.registers.table import Kind
 
 __all__ = ["FOLDER", "Bus", "Ip", "buses_of", "ip_facts", "ip_files", "write"]
 
@@ -30,9 +31,14 @@ FOLDER = "ip"
 
 _VENDOR = "firm-hdl"
 
+# As AMD's IP "Mini ISP" (2025) names them; "zynquplus" has the RFSoCs and the Kria, too. An "a" in
+# front is for cars, a "q" for defence, an "l" behind is of low power.
 _FAMILIES = (
-    *("artix7", "kintex7", "spartan7", "virtex7", "zynq", "kintexu", "virtexu"),
-    *("kintexuplus", "virtexuplus", "zynquplus"),
+    *("artix7", "artix7l", "aartix7", "qartix7"),
+    *("kintex7", "kintex7l", "akintex7", "qkintex7", "qkintex7l"),
+    *("spartan7", "aspartan7", "virtex7", "qvirtex7", "zynq", "azynq", "qzynq"),
+    *("kintexu", "virtexu", "artixuplus", "kintexuplus", "spartanuplus"),
+    *("virtexuplus", "virtexuplusHBM", "virtexuplus58g", "zynquplus", "versal"),
 )
 
 _VIEWS = (
@@ -47,6 +53,17 @@ proc init_gui { IPINST } {
   ipgui::add_param $IPINST -name "Component_Name"
 }
 """
+
+# IEEE Std 1685-2009, 6.11.9: access, and what a write does if it does not store the value.
+_ACCESS: dict[Kind, tuple[str, str]] = {
+    "constant": ("read-only", ""),
+    "status": ("read-only", ""),
+    "setting": ("read-write", ""),
+    # High for one cycle, and never read: "any write to this field may modify that data".
+    "pulse": ("write-only", "modify"),
+    "unused": ("write-only", ""),
+    "event": ("read-write", "oneToClear"),
+}
 
 _AXIS = ("tdata", "tkeep", "tlast", "tuser", "tdest", "tid", "tvalid", "tready")
 _AXI = (
@@ -77,7 +94,7 @@ class Ip:
     table : RegisterMap or None
         The registers behind ``s_axi``, if there are any.
     defaults : mapping of str to int
-        Values of inputs that are not connected; all others are 0, and TREADY is 1.
+        Values of inputs that are not connected, beside those that AXI has. All others are 0.
     """
 
     name: str
@@ -201,18 +218,22 @@ def ip_files(ip: Ip) -> dict[str, str]:
     """
     buses = buses_of(ip.ports)
     xgui = f"{ip.name}_v{ip.version.replace('.', '_')}.tcl"
-    # All that leaves a stream that is not connected is taken.
-    ready = {
-        bus.ports["TREADY"]: 1 for bus in buses if bus.mode == "master" and "TREADY" in bus.ports
+    values: dict[str, Any] = {
+        "ip": ip,
+        "buses": buses,
+        "table": ip.table,
+        "registers": [
+            (each, _access(each), _reset(each)) for each in (ip.table.registers if ip.table else ())
+        ],
+        "field_access": _ACCESS,
+        "defaults": {**_defaults(ip, buses), **ip.defaults},
     }
-    values: dict[str, Any] = {"ip": ip, "buses": buses, "table": ip.table}
     component = render(
         "packaging/component.xml",
         **values,
         views=_VIEWS,
         families=_FAMILIES,
         xgui=xgui,
-        defaults={**ready, **ip.defaults},
     )
     script = render(
         "packaging/vivado_ip.tcl",
@@ -232,6 +253,33 @@ def ip_files(ip: Ip) -> dict[str, str]:
         f"{here}/package.tcl": script,
         **{f"{here}/{file}": text for file, text in ip.files.items()},
         f"{here}/xgui/{xgui}": _XGUI,
+    }
+
+
+def _access(register: Register) -> str:
+    found = {_ACCESS[field.kind][0] for field in register.fields}
+    return found.pop() if len(found) == 1 else "read-write"
+
+
+def _reset(register: Register) -> int | None:
+    """Return the value after a reset, unless hardware shows some of it."""
+    if any(field.kind == "status" for field in register.fields):
+        return None
+    return sum(field.reset << field.low for field in register.fields)
+
+
+def _defaults(ip: Ip, buses: Sequence[Bus]) -> dict[str, int]:
+    """Return the values of AXI's inputs that the other side does not have: all ones.
+
+    TREADY and TKEEP are those of IHI 0051, "Default value signaling", so what leaves a stream that
+    is not connected is taken; WSTRB is that of IHI 0022. TLAST has no default.
+    """
+    signals = ("TREADY", "TKEEP", "WSTRB")
+    ones = {bus.ports[signal] for bus in buses for signal in signals if signal in bus.ports}
+    return {
+        port.name: (1 << port.width) - 1
+        for port in ip.ports
+        if port.direction == "in" and port.name in ones
     }
 
 
@@ -265,7 +313,7 @@ def write(converters: Converters, texts: Mapping[str, str]) -> Output:
                 ports=ports,
                 title=f"{way.capitalize()} of {message}",
                 description=f"{_WHAT[way]} of {message}, on a bus of {plan.bus_bytes} bytes.",
-                defaults=_tied(plan, ports) if way == "serializer" else {},
+                defaults=_tied(plan, ports, way),
             )
         )
     for way, layout in converters.registers.items():
@@ -292,16 +340,18 @@ _WHAT: dict[Direction, str] = {
 }
 
 
-def _tied(plan: Plan, ports: Sequence[Any]) -> dict[str, int]:
-    """Return what makes fields 0 or empty whose leaves are not connected."""
-    inner = {port.name: port for port in ports_of(plan, "serializer") if port.leaf is not None}
+def _tied(plan: Plan, ports: Sequence[Any], way: Direction) -> dict[str, int]:
+    """Return what takes leaves that are not connected, or what makes their fields 0 or empty."""
+    inner = {port.name: port for port in ports_of(plan, way) if port.leaf is not None}
     found = {}
     for port in ports:
         plain = inner.get(getattr(port, "inner", port.name))
         if plain is not None and plain.leaf is not None:
             kind = plan.leaves[plain.leaf].kind
-            is_one = plain.member == "valid" or (plain.member == "data" and kind == "trigger")
-            if is_one and kind != "items":
+            is_one = plain.member == "ready" or (
+                kind != "items" and (plain.member == "valid" or kind == "trigger")
+            )
+            if is_one and port.direction == "in":
                 found[port.name] = 1
     return found
 

@@ -63,7 +63,7 @@ def buses(component):
 
 
 def recorded(folder, work):
-    """Run the script, and return what it says of each bus, and the addresses of registers."""
+    """Run the script; return what it says of each bus, of registers, and of open inputs."""
     work.mkdir(exist_ok=True)
     (work / "run.tcl").write_text(RECORDER + f"source {{{folder / 'package.tcl'}}}\n")
     command = [tclsh(), "run.tcl"]
@@ -84,15 +84,56 @@ def recorded(folder, work):
         parameters = {key: v["value"] for key, v in inside.items() if "value" in v}
         assert place["abstraction_type_vlnv"] == place["bus_type_vlnv"].replace(":1.0", "_rtl:1.0")
         found[name] = (place["bus_type_vlnv"], place["interface_mode"], ports, parameters)
-    offsets = {
-        each.split("/")[-1]: v["address_offset"]
-        for each, v in values.items()
-        if "address_offset" in v
-    }
+    registers = {}
+    for place, own in values.items():
+        if "address_offset" in own:
+            registers[place.split("/")[-1]] = (
+                *(own.get(each) for each in ("address_offset", "access", "reset_value")),
+                {
+                    each.split("/")[-1]: (
+                        *(v[key] for key in ("bit_offset", "bit_width", "access")),
+                        v.get("modified_write_value"),
+                    )
+                    for each, v in values.items()
+                    if each.startswith(f"{place}/")
+                },
+            )
     # A second run replaces nothing.
     again = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)
     assert again.returncode == 1 and "exists" in again.stderr
-    return found, offsets
+    defaults = {
+        each.split("/")[-1]: v["driver_value"] for each, v in values.items() if "driver_value" in v
+    }
+    return found, registers, defaults
+
+
+def registers_of(component):
+    """Return what the XML says of each register: address, access, reset, and its fields."""
+
+    def said(node, *paths):
+        return tuple((texts(node, path) or [None])[0] for path in paths)
+
+    return {
+        texts(register, "name")[0]: (
+            *said(register, "addressOffset", "access", "reset/value"),
+            {
+                texts(each, "name")[0]: said(
+                    each, "bitOffset", "bitWidth", "access", "modifiedWriteValue"
+                )
+                for each in spirit(register, "field")
+            },
+        )
+        for register in spirit(component, "memoryMaps/memoryMap/addressBlock/register")
+    }
+
+
+def default_values(component):
+    """Return what the XML says of inputs that are not connected."""
+    return {
+        texts(port, "name")[0]: value
+        for port in spirit(component, "model/ports/port")
+        for value in texts(port, "wire/driver/defaultValue")
+    }
 
 
 def check_ip(folder, work):
@@ -112,14 +153,14 @@ def check_ip(folder, work):
     read = Component()
     read.load(str(file))
     assert read.name == folder.name
+    for family in ("azynq", "artixuplus", "zynquplus", "versal"):
+        assert f'"Production">{family}<' in file.read_text()
+        assert f"{family} Production" in (folder / "package.tcl").read_text()
     component = ElementTree.parse(file).getroot()
-    found, offsets = recorded(folder, work)
+    found, registers, defaults = recorded(folder, work)
     assert found == buses(component)
-    path = "memoryMaps/memoryMap/addressBlock/register"
-    addresses = zip(
-        texts(component, f"{path}/name"), texts(component, f"{path}/addressOffset"), strict=True
-    )
-    assert offsets == dict(addresses)
+    assert defaults == default_values(component)
+    assert registers == registers_of(component)
     for listed in texts(component, "fileSets/fileSet/file/name"):
         assert (folder / listed).is_file()
         assert listed.startswith("xgui") or (work / "packaged" / listed).is_file()
@@ -180,6 +221,9 @@ def test_converters_are_ip(tmp_path):
         "aclk": ("xilinx.com:signal:clock:1.0", "slave"),
         "aresetn": ("xilinx.com:signal:reset:1.0", "slave"),
     }
+    # Without TKEEP, all bytes of a beat are there.
+    component = ElementTree.parse(built.folder / "ip" / f"{name}_deserializer/component.xml")
+    assert default_values(component.getroot())["s_axis_tkeep"] == "255"
     assert found["m_axis_bytes_items"][2].keys() == {"TDATA", "TLAST", "TVALID", "TREADY"}
     assert found["aclk"][3] == {
         "ASSOCIATED_BUSIF": ":".join(each for each in found if "axis" in each),
@@ -189,19 +233,16 @@ def test_converters_are_ip(tmp_path):
     found, left = check_ip(ip, tmp_path / "tx")
     assert found["s_axis_status"][1] == "slave" and not left
     # A field that is not connected is 0 or empty, and what leaves is taken.
-    component = ElementTree.parse(ip / "component.xml").getroot()
-    ones = {
-        texts(port, "name")[0]
-        for port in spirit(component, "model/ports/port")
-        if texts(port, "wire/driver/defaultValue")
-    }
-    assert ones == {
-        *(
-            f"s_axis_{each}_tvalid"
-            for each in ("status", "range_field", "status_field", "m_axis_length")
-        ),
-        *("m_axis_tready", "m_axis_status_tready"),
-    }
+    assert default_values(ElementTree.parse(ip / "component.xml").getroot()) == dict.fromkeys(
+        [
+            *(
+                f"s_axis_{each}_tvalid"
+                for each in ("status", "range_field", "status_field", "m_axis_length")
+            ),
+            *("m_axis_tready", "m_axis_status_tready"),
+        ],
+        "1",
+    )
     for each in ip.parent.iterdir():
         files = [str(file) for file in each.glob("*.v")]
         subprocess.run(["iverilog", "-g2005", "-Wall", "-t", "null", *files], check=True)
@@ -212,11 +253,34 @@ def test_converters_are_ip(tmp_path):
         f"{name}_deserializer_registers",
         f"{name}_serializer_registers",
     ]
-    found, left = check_ip(ip.with_name(f"{name}_serializer_registers"), tmp_path / "registers")
+    ip = ip.with_name(f"{name}_serializer_registers")
+    found, left = check_ip(ip, tmp_path / "registers")
     assert not left
+    registers = registers_of(ElementTree.parse(ip / "component.xml").getroot())
+    assert registers["id"] == (
+        "0x0",
+        "read-only",
+        str(0x4D524946),
+        {"id": ("0", "32", "read-only", None)},
+    )
+    assert registers["version"][2] == str(1 << 16)
+    assert registers["control"][1:3] == ("write-only", "0")
+    assert registers["control"][3]["latch"] == ("1", "1", "write-only", "modify")
+    assert registers["status"][1:3] == ("read-only", None)
+    assert registers["interrupt_enable"][3]["error"] == ("1", "1", "read-write", None)
+    assert registers["interrupt"][3]["error"] == ("1", "1", "read-write", "oneToClear")
     assert found["s_axi"][:2] == ("xilinx.com:interface:aximm:1.0", "slave")
     assert found["aclk"][3]["ASSOCIATED_BUSIF"] == "m_axis:s_axi"
     assert found["irq"][1:3] == ("master", {"INTERRUPT": "irq"})
+    # Leaves that are pins are taken, too.
+    (built,) = build(
+        ["test_msgs/msg/T"],
+        tmp_path / "out",
+        library=Library(paths=[tmp_path]),
+        options=Options(ports="flat", ip="vivado"),
+    )
+    component = ElementTree.parse(built.folder / "ip" / f"{name}_deserializer/component.xml")
+    assert default_values(component.getroot()).items() >= {("range_field_ready", "1")}
     # Without the option, all of it goes, with its folders.
     build(
         ["test_msgs/msg/T"],
