@@ -6,9 +6,9 @@ import argparse
 import os
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
+from firm_hdl.arguments import TYPE_HELP, add_ip, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
-from firm_hdl.export.options import EXTRAS, PORTS, Extra, Options
+from firm_hdl.export.options import EXTRAS, LEAF_PORTS, PORTS, Extra, Options
 from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
@@ -59,6 +59,13 @@ def add_build(command: argparse.ArgumentParser) -> None:
         help="also write converters whose messages are registers on AXI4-Lite, with SystemRDL and "
         "C headers; of fields of fixed size",
     )
+    add_ip(command)
+    command.add_argument(
+        "--leaf-ports",
+        choices=LEAF_PORTS,
+        help="axis: also modules whose leaves are AXI4-Stream, m_axis_linear_x_tdata; "
+        "default: plain, but axis with --ip",
+    )
     command.add_argument("--force", action="store_true", help="also write folders that are current")
     add_jobs(command)
     command.set_defaults(run=_build)
@@ -107,6 +114,8 @@ def _build(args: argparse.Namespace) -> None:
             ports=args.ports,
             extras=args.extras | ({"documents"} if args.datasheet else set()),
             registers=args.registers,
+            leaf_ports=args.leaf_ports or ("axis" if args.ip else "plain"),
+            ip=args.ip,
         ),
         force=args.force,
         stimuli=packets_of,

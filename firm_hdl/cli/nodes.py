@@ -11,7 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
+from firm_hdl.arguments import add_engine, add_ip, add_json, add_path, number_between, seconds
 from firm_hdl.cli.building import tell
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
@@ -96,6 +96,7 @@ def _add_build(command: argparse.ArgumentParser) -> None:
         action="store_true",
         help="also write datasheet.html, with topics, ports, pictures, cycles and area",
     )
+    add_ip(command)
     command.add_argument("--force", action="store_true", help="also write a folder that is current")
     command.add_argument(
         "--sim", action="store_true", help="also compile the simulation, for firm-hdl node run"
@@ -261,7 +262,11 @@ def _act(args: argparse.Namespace, description: Description) -> None:
 
         # What is wrong with it is found at once.
         board = None if args.target is None else read_board(args.target)
-        options: dict[str, Any] = {"stimuli": _stimuli, "datasheet": args.datasheet}
+        options: dict[str, Any] = {
+            "stimuli": _stimuli,
+            "datasheet": args.datasheet,
+            "ip": args.ip is not None,
+        }
         built = build_node(description, args.out, force=args.force, **options)
         tell(built, end="")
         if args.sim:

@@ -130,10 +130,11 @@ class FrameSlots(wiring.Component):
         written, read = Signal(range(self.slots)), Signal(range(self.slots))
         full = Signal(self.slots)
         kinds = Array(Signal(2, name=f"kind_{slot}") for slot in range(self.slots))
-        free = Signal()
+        # A frame counts a cycle after its `commit`: it is a long way to that.
+        free, commits, kind = Signal(), Signal(), Signal(2)
         header_bits = range(self.header_bytes)[-1].bit_length()
         m.d.comb += [
-            free.eq(~full.bit_select(written, 1)),
+            free.eq(~full.bit_select(written, 1) & ~commits),
             came.free.eq(free),
             header_in.addr.eq(Cat(came.header_at[:header_bits], written)),
             header_in.data.eq(came.header_byte),
@@ -149,10 +150,11 @@ class FrameSlots(wiring.Component):
             payloads.reads.eq(goes.payload_moves),
             goes.payload_byte.eq(payloads.word),
         ]
-        with m.If(came.commit & free):
+        m.d.sync += [commits.eq(came.commit & free), kind.eq(came.kind)]
+        with m.If(commits):
             m.d.sync += [
                 full.bit_select(written, 1).eq(1),
-                kinds[written].eq(came.kind),
+                kinds[written].eq(kind),
                 written.eq(written + 1),
             ]
         with m.If(goes.release):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
+from amaranth.hdl import Array, Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -258,7 +258,7 @@ class UdpTransmitter(wiring.Component):
     The header is written and summed beside the payload: in a cycle in which a byte of the payload
     comes for one half of a word, one of the header fits into the other half. So a payload of 12
     bytes or more takes a byte per cycle; a shorter one waits before its last byte. The datagram is
-    in its slot 5 cycles after its last byte.
+    in its slot 6 cycles after its last byte.
 
     A datagram is dropped if it has more than 1472 bytes, or another number of bytes than `length`.
 
@@ -305,14 +305,15 @@ class UdpTransmitter(wiring.Component):
             (10, total_length),
         ]
         halves = [
-            (place + 1 - half, word[8 * half :][:8]) for place, word in fields for half in (0, 1)
+            (place + 1 - half, field[8 * half :][:8]) for place, field in fields for half in (0, 1)
         ]
         own = (self.address >> 16) + (self.address & 0xFFFF) + UDP + 0xFFFF - 20
         start = own % 0xFFFF
         count = Signal(range(MOST_PAYLOAD + 1))
         step = Signal(range(len(halves) + 1))
-        total = Signal(17)
-        header_done, long, moves = Signal(), Signal(), Signal()
+        # The sum is a word behind.
+        total, word = Signal(17), Signal(16)
+        header_done, last_half, long, moves = Signal(), Signal(), Signal(), Signal()
         ended, checksum = Signal(), Signal(16)
         from_header, following, from_payload = Signal(8), Signal(8), Signal(8)
         upper, lower = Signal(8), Signal(8)
@@ -324,14 +325,13 @@ class UdpTransmitter(wiring.Component):
                     m.d.comb += slot.header_at.eq(place)
                     m.d.comb += following.eq(halves[(number + 1) % len(halves)][1])
         m.d.comb += [
-            header_done.eq(step == len(halves)),
             slot.payload_at.eq(count),
             slot.payload_byte.eq(came.payload.data),
             slot.payload_write.eq(moves),
             slot.header_byte.eq(from_header),
             slot.kind.eq(DATAGRAM),
         ]
-        m.d.sync += self.unfit.eq(0)
+        m.d.sync += [self.unfit.eq(0), word.eq(0), total.eq(add_word(total, word))]
         with m.If(came.valid):
             m.d.sync += [
                 length.eq(came.payload.length + HEADER_BYTES),
@@ -340,15 +340,13 @@ class UdpTransmitter(wiring.Component):
         with m.FSM():
             with m.State("IDLE"):
                 m.d.sync += [count.eq(0), step.eq(0), total.eq(start), long.eq(0)]
-                m.d.sync += from_header.eq(halves[0][1])
+                m.d.sync += [from_header.eq(halves[0][1]), header_done.eq(0), last_half.eq(0)]
                 with m.If(came.valid & slot.free):
                     m.next = "TAKE"
             with m.State("TAKE"):
                 # The last byte waits until the header, which comes with it, has been read.
                 m.d.comb += [
-                    came.ready.eq(
-                        ~came.payload.last | header_done | ((step == len(halves) - 1) & count[0])
-                    ),
+                    came.ready.eq(~came.payload.last | header_done | (last_half & count[0])),
                     moves.eq(came.valid & came.ready),
                     from_payload.eq(Mux(moves, came.payload.data, 0)),
                 ]
@@ -361,12 +359,14 @@ class UdpTransmitter(wiring.Component):
                     upper.eq(Mux(at_upper & moves, from_payload, Mux(step[0], head, 0))),
                     lower.eq(Mux(~at_upper & moves, from_payload, Mux(step[0], 0, head))),
                 ]
-                m.d.sync += [
-                    total.eq(add_word(total, Cat(lower, upper))),
-                    step.eq(step + header_moves),
-                ]
+                m.d.sync += word.eq(Cat(lower, upper))
                 with m.If(header_moves):
-                    m.d.sync += from_header.eq(following)
+                    m.d.sync += [
+                        step.eq(step + 1),
+                        from_header.eq(following),
+                        last_half.eq(step == len(halves) - 2),
+                        header_done.eq(step == len(halves) - 1),
+                    ]
                 with m.If(moves):
                     m.d.sync += [
                         count.eq(count + ~long),
@@ -376,7 +376,8 @@ class UdpTransmitter(wiring.Component):
                         m.next = "CARRY"
                         m.d.sync += ended.eq((count + 1) == came.payload.length)
             with m.State("CARRY"):
-                m.d.sync += total.eq(add_word(total, Const(0, 16)))
+                m.next = "FOLD"
+            with m.State("FOLD"):
                 m.next = "SUM"
             with m.State("SUM"):
                 folded = total[:16] + total[16]

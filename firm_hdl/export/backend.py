@@ -20,7 +20,13 @@ from firm_hdl.garbage import search_put_off
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
-from firm_hdl.program import MANY_STATES, deserializer_program, program_lines, serializer_program
+from firm_hdl.program import (
+    LEGEND,
+    MANY_STATES,
+    deserializer_program,
+    program_lines,
+    serializer_program,
+)
 from firm_hdl.rtlil import netlist_of, rtlil_of
 from firm_hdl.rtlil.ir import Design
 
@@ -116,7 +122,8 @@ class Converters:
         program = make(self.plan)
         if len(program.states) > MANY_STATES:
             return f"{len(program.states)} steps: `firm-hdl plan --program` prints them.\n"
-        lines = ["Steps, as `firm-hdl plan --program` prints and explains them:"]
+        lines = ["Steps, as `firm-hdl plan --program` prints them."]
+        lines += [line.removeprefix("# ") for line in LEGEND.splitlines()]
         for line in program_lines(program):
             lines += textwrap.wrap(line, 95, subsequent_indent="      ", break_long_words=False)
         return "".join(f"{line}\n" for line in lines)

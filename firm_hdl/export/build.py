@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.export import registers, systemverilog, verilog, vhdl
+from firm_hdl.export import readme, registers, systemverilog, verilog, vhdl, vivado_ip
 from firm_hdl.export.backend import BuildError, Converters
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.manifest import (
@@ -177,7 +177,7 @@ def _converters(
             "max_message_bytes": plan.max_message_bytes,
             "ports": options.ports,
             "extras": sorted(options.extras),
-            **({"registers": True} if options.registers else {}),
+            **options.facts,
         },
         "stimuli_sha256": digest("".join(f"{packet.hex()}\n" for packet in packets)),
     }
@@ -243,6 +243,7 @@ def _build_one(task: _Task, force: bool) -> Built:
 
 def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dict[str, Any]]:
     """Write all files of a folder; return them and the manifest."""
+    options = converters.options
     converters = dataclasses.replace(
         converters,
         circuits=converters.make_circuits(),
@@ -252,6 +253,9 @@ def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dic
     outputs = {"Verilog": verilog.write(converters), "VHDL": vhdl.write(converters)}
     if converters.registers:
         outputs["registers"] = registers.write(converters)
+    if options.ip:
+        texts = {name: text for each in outputs.values() for name, text in each.files.items()}
+        outputs["IP"] = vivado_ip.write(converters, texts)
     if "systemverilog" in extras:
         outputs["SystemVerilog"] = systemverilog.write(converters)
     sections = {
@@ -266,5 +270,6 @@ def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dic
         languages = ("VHDL", "Verilog", "SystemVerilog")
         instances = {language: shown[language].instances for language in languages}
         outputs["documents"] = datasheet.write(converters, sections, instances)
+    outputs["readme"] = readme.write(converters, sections)
     files = {name: text for output in outputs.values() for name, text in output.files.items()}
     return files, manifest_of(converters.inputs, files, sections)

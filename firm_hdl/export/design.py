@@ -9,6 +9,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 import firm_hdl
+from firm_hdl.export.crossings import constraints
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.fusesoc import core, fileset
 from firm_hdl.export.manifest import digest, inputs_of, manifest_of
@@ -64,13 +65,12 @@ def verilog_module(name: str) -> str:
     return f"{name}_verilog"
 
 
-def verilog_file(design: str | Design, *, name: str, header: str) -> dict[str, str]:
-    """Write a design in Verilog.
+def verilog_file(design: Design, *, name: str, header: str) -> dict[str, str]:
+    """Write a design in Verilog, and the constraints of FIFOs that cross clock domains.
 
     Parameters
     ----------
-    design : str or Design
-        The design, as RTLIL of Amaranth, or read already.
+    design : Design
     name : str
         Name of the VHDL entity; the module is ``NAME_verilog``.
     header : str
@@ -82,7 +82,10 @@ def verilog_file(design: str | Design, *, name: str, header: str) -> dict[str, s
         The text, by the file's path in the folder of the design, as for all files here.
     """
     module = verilog_module(name)
-    return {f"{module}.v": convert(design, name=module, header=header)}
+    return {
+        f"{module}.v": convert(design, name=module, header=header),
+        **constraints(design, name=name, module=module),
+    }
 
 
 def vhdl_folder(files: Mapping[str, str]) -> dict[str, str]:

@@ -26,10 +26,10 @@ import re
 import secrets
 import stat
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from fcntl import LOCK_EX, LOCK_NB, flock
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from firm_hdl.export.backend import BuildError
@@ -47,10 +47,11 @@ _MOST_BYTES = 1 << 28
 _MOST_NAME = 300
 
 _OURS = (
-    r"((vhdl|systemverilog)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|\w+_(cdr|ros1)_\d+\w*_pkg|"
-    r"bench_files|bitstream|datasheet|files|layout|link|pins|plan|report|run_ghdl|run_iverilog|"
-    r"stimuli|summary|top|vivado|vunit_run|waivers)"
-    r"\.(bin|bit|core|f|h|html|lpf|pcf|py|rdl|sh|sv|svg|tcl|txt|v|veo|vhd|vlt|yaml))"
+    r"((vhdl|systemverilog|ip/\w+(/xgui)?)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|"
+    r"\w+_(cdr|ros1)_\d+\w*_pkg|README|bench_files|bitstream|component|datasheet|files|layout|"
+    r"link|package|pins|plan|report|run_ghdl|run_iverilog|run_verilator|stimuli|summary|top|vivado|"
+    r"vunit_run|waivers)\.(bin|bit|core|f|h|html|lpf|md|pcf|py|rdl|sh|sv|svg|tcl|sdc|txt|v|veo|vhd|vlt|xdc|"
+    r"xml|yaml))"
 )
 """Names of the files that firm-hdl writes, and deletes if they are outdated."""
 
@@ -182,7 +183,8 @@ def _write(
                     os.replace(staged[name], own, src_dir_fd=root, dst_dir_fd=where)
                 else:
                     os.unlink(own, dir_fd=where)
-        for subfolder in {os.path.dirname(n) for n in known} - {os.path.dirname(n) for n in new}:
+        # Inner folders first; one with files of the user's stays.
+        for subfolder in sorted(_folders(known) - _folders(new), reverse=True):
             with suppress(OSError):
                 os.rmdir(subfolder, dir_fd=root)
         os.replace(last, MANIFEST, src_dir_fd=root, dst_dir_fd=root)
@@ -201,6 +203,11 @@ def _known(old: Mapping[str, Any], new: Mapping[str, str], design: str) -> dict[
             if name in new or (is_ours and name.casefold() not in folded):
                 known.setdefault(name, set()).add(value)
     return known
+
+
+def _folders(names: Iterable[str]) -> set[str]:
+    """Return the subfolders of files, with all folders above them."""
+    return {str(folder) for name in names for folder in PurePath(name).parents} - {"."}
 
 
 def _listed(names: set[str]) -> str:

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.wire import Wire
 
-__all__ = ["EXTRAS", "PORTS", "Extra", "Options", "Ports"]
+__all__ = ["EXTRAS", "IPS", "LEAF_PORTS", "PORTS", "Extra", "Ip", "LeafPorts", "Options", "Ports"]
 
 Ports: TypeAlias = Literal["records", "flat"]
 PORTS: tuple[Ports, ...] = get_args(Ports)
+
+LeafPorts: TypeAlias = Literal["plain", "axis"]
+LEAF_PORTS: tuple[LeafPorts, ...] = get_args(LeafPorts)
+
+Ip: TypeAlias = Literal["vivado"]
+IPS: tuple[Ip, ...] = get_args(Ip)
 
 Extra: TypeAlias = Literal["systemverilog", "tools", "documents"]
 EXTRAS: tuple[Extra, ...] = get_args(Extra)
@@ -39,6 +45,10 @@ class Options:
         Some of :data:`EXTRAS`.
     registers : bool
         Also write converters with registers on AXI4-Lite.
+    leaf_ports : "plain" or "axis"
+        "axis": also write modules whose leaves are AXI4-Stream.
+    ip : "vivado" or None
+        Also write IP for a tool, with these leaves.
     """
 
     wire: Wire | None = None
@@ -47,3 +57,14 @@ class Options:
     ports: Ports = "records"
     extras: frozenset[Extra] = frozenset()
     registers: bool = False
+    leaf_ports: LeafPorts = "plain"
+    ip: Ip | None = None
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The options that are not of every build, if they differ from their defaults."""
+        return {
+            **({"registers": True} if self.registers else {}),
+            **({"leaf_ports": self.leaf_ports} if self.leaf_ports != "plain" else {}),
+            **({"ip": self.ip} if self.ip else {}),
+        }

@@ -272,7 +272,7 @@ class PlainTop(Component):
                 m.d.comb += value.eq(source)
             elif pin.is_count:
                 last = getattr(self, f"{name.removesuffix('keep')}last")
-                m.d.comb += pin.value.eq(count_of_keep(value, last))
+                m.d.comb += pin.value.eq(count_of_keep(m, value, last))
             else:
                 m.d.comb += pin.value.eq(value)
         return m

@@ -15,6 +15,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.limits import check_bits
+from firm_hdl.gateware.positions import named
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.plan import check_bus_bytes
 
@@ -27,14 +28,17 @@ __all__ = [
 ]
 
 
-def count_of_keep(keep: Value, last: Value) -> Value:
+def count_of_keep(m: Module, keep: Value, last: Value) -> Value:
     """Return the number of bytes in a beat: ones of TKEEP from bit 0 up to the first zero.
 
     All bytes count in a beat that is not the last one of its packet.
     """
     lanes = len(keep)
     # One-hot; bits above the first zero have no effect.
-    found = {n: keep[:n].all() & ~keep[n] for n in range(1, lanes)} | {lanes: keep.all()}
+    found = {
+        n: named(m, f"tkeep_begins_with_{n}", keep[:n].all() & ~keep[n]) for n in range(1, lanes)
+    }
+    found[lanes] = keep.all()
     bits = range(lanes.bit_length())
     ones = Cat(Cat(here for n, here in found.items() if n >> bit & 1).any() for bit in bits)
     return Mux(last, ones, lanes)
@@ -173,7 +177,7 @@ class AxiStreamToPackets(_Adapter):
         axis, packets = self.axis, self.packets
         m.d.comb += [
             Value.cast(packets.payload.data).eq(axis.tdata),
-            packets.payload.count.eq(count_of_keep(axis.tkeep, axis.tlast)),
+            packets.payload.count.eq(count_of_keep(m, axis.tkeep, axis.tlast)),
             packets.payload.last.eq(axis.tlast),
             packets.valid.eq(axis.tvalid),
             axis.tready.eq(packets.ready),

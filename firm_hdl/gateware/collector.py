@@ -10,7 +10,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import Out
 
 from firm_hdl.gateware.flow import Flow, exceeds, last_word
-from firm_hdl.gateware.positions import Ring, any_of, pick
+from firm_hdl.gateware.positions import Ring, any_of, named, pick
 from firm_hdl.gateware.signatures import Status, StatusSignature
 from firm_hdl.gateware.words import words_layout, write_bytes
 from firm_hdl.plan import Plan
@@ -155,7 +155,9 @@ class Collector(wiring.Component):
         ends = Signal()
         is_begin = begins_run | begins_loop
         tails = {each.number for each in program.states if each.is_final_tail}
-        to_tail = any_of([each.taken for each in flow.exits if each.way.to in tails])
+        to_tail = named(
+            m, "to_tail", any_of([each.taken for each in flow.exits if each.way.to in tails])
+        )
         no_rest = is_begin & of_length("zero") & ~begins_string & to_tail
         m.d.comb += [
             done.eq(
@@ -169,6 +171,7 @@ class Collector(wiring.Component):
         # leaves are offered; `served` records which of them were taken.
         free = Signal()
         complete = Signal()
+        has_rest = named(m, "has_rest", rest.any())
         readers: dict[int, list[_Reader]] = {}
         transfer_names = iter(
             unique(
@@ -188,7 +191,7 @@ class Collector(wiring.Component):
                 if transfer.leaf in lengths:
                     valid = valid & lengths[transfer.leaf].known
                 # A rest may be empty.
-                wanted = rest.any() if transfer.is_rest else Const(1, 1)
+                wanted = has_rest if transfer.is_rest else Const(1, 1)
                 earlier = any_of([each.lacks for each in readers[state.number]])
                 m.d.comb += [
                     left.eq(flow.step[state.number] & wanted & ~served[slot]),
@@ -210,13 +213,15 @@ class Collector(wiring.Component):
         ]
         # The last state also waits for room for the status: so a status is never lost, and `status`
         # needs only one register.
+        lacks_any = named(m, "lacks_any", any_of(missing))
         m.d.comb += [
             free.eq(~self.words.valid | self.words.ready),
-            complete.eq(free & ~any_of(missing) & (~ends | ~status.valid | status.ready)),
+            complete.eq(free & ~lacks_any & (~ends | ~status.valid | status.ready)),
         ]
         for slot, flag in enumerate(served):
             taken = [found[slot].go for found in readers.values() if slot < len(found)]
-            m.d.sync += flag.eq((flag | any_of(taken)) & ~complete)
+            serves = named(m, f"serves_{slot}", any_of(taken))
+            m.d.sync += flag.eq((flag | serves) & ~complete)
         for leaf, hold in held.items():
             # Only a state that waits for `status` keeps a length that it has taken.
             m.d.comb += hold.eq(
@@ -235,15 +240,19 @@ class Collector(wiring.Component):
         # error counts.
         error = Signal(Status)
         found = Signal(Status)
-        wrong_items = any_of(
-            [
-                reader.go & (leaves[reader.transfer.leaf].payload.last != _last(flow, reader))
-                for reader in every
-                if plan.leaves[reader.transfer.leaf].kind == "items"
-            ]
+        wrong_items = named(
+            m,
+            "wrong_items",
+            any_of(
+                [
+                    reader.go & (leaves[reader.transfer.leaf].payload.last != _last(flow, reader))
+                    for reader in every
+                    if plan.leaves[reader.transfer.leaf].kind == "items"
+                ]
+            ),
         )
-        is_taken = any_of([leaves[leaf].ready for leaf in lengths])
-        over = is_taken & of_length("over")
+        is_taken = named(m, "takes_length", any_of([leaves[leaf].ready for leaf in lengths]))
+        over = named(m, "takes_wrong_length", is_taken & of_length("over"))
         m.d.comb += found.eq(error)
         with m.If((error == Status.OK) & wrong_items):
             m.d.comb += found.eq(Status.ITEMS)
@@ -258,7 +267,7 @@ class Collector(wiring.Component):
         # The words.
         write_bytes(m, program, flow.step, leaves, served, free, self.words.payload)
         nul = has_nul & takes_rest
-        items_align = _items_align(plan, program, flow, lengths)
+        items_align = _items_align(m, plan, program, flow, lengths)
         self._write_sizes(m, flow, rest, nul, takes_rest, items_align, ends, complete, free)
         with m.If(free):
             m.d.sync += [
@@ -275,7 +284,7 @@ class Collector(wiring.Component):
             moves=complete,
             ends=ends,
             done=done,
-            count=pick(count, LENGTH_BITS),
+            count=named(m, "count", pick(count, LENGTH_BITS)),
             single=of_length("at_most_one_pass"),
             nul=False,
         )
@@ -327,6 +336,7 @@ class Collector(wiring.Component):
         ]
         with m.If(ends):
             m.d.comb += [to_end.eq(Mux(begins, map_size + (bus - 1), bus)), end_mask.eq(bus - 1)]
+        most_bytes = named(m, "most_bytes", to_map + to_end + (bus - 1))
         with m.If(complete):
             m.d.sync += begun.eq(begins & ~ends)
         with m.If(free):
@@ -335,7 +345,7 @@ class Collector(wiring.Component):
                 words.map_bytes.eq(map_bytes),
                 words.two_word_map.eq(two_word_map),
                 words.to_map.eq(to_map),
-                words.max_beats.eq((to_map + to_end + (bus - 1)) >> ring.lane_bits),
+                words.max_beats.eq(most_bytes >> ring.lane_bits),
                 words.map_mask.eq(map_mask),
                 words.to_end.eq(to_end),
                 words.end_mask.eq(end_mask),
@@ -351,7 +361,7 @@ def _offered(
     fields = ("zero", "over", "skips", "at_most_one_pass")
     zero, over, skips, one = (Signal(name=f"{each}_{name}", reset_less=True) for each in fields)
     rest = Signal(length.lanes.bit_length(), name=f"rest_{name}", reset_less=True)
-    is_zero = ~value.any()
+    is_zero = named(m, f"offered_{name}_is_0", ~value.any())
     m.d.sync += known.eq(port.valid & ~port.ready & ~held)
     with m.If(~held):
         m.d.sync += [zero.eq(is_zero), over.eq(exceeds(value, length.limit))]
@@ -382,6 +392,7 @@ def _last(flow: Flow[SerializerState], reader: _Reader) -> Value:
 
 
 def _items_align(
+    m: Module,
     plan: Plan,
     program: SerializerProgram,
     flow: Flow[SerializerState],
@@ -401,4 +412,5 @@ def _items_align(
                 (not_empty, align_addend(length.align, plan.header_bytes) if wide else 0)
             )
             masks.append((not_empty, length.align - 1))
-    return pick(addends, 3), pick(masks, 3)
+    addend = named(m, "items_align_addend", pick(addends, 3))
+    return addend, named(m, "items_align_mask", pick(masks, 3))

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from amaranth.hdl import Module, Mux, Signal, Value
+from amaranth.hdl import Const, Module, Mux, Signal, Value
 
-from firm_hdl.gateware.positions import any_of, pick
+from firm_hdl.gateware.positions import any_of, named, pick
+from firm_hdl.names.attributes import REMARK
 
 __all__ = ["Counter"]
 
@@ -48,7 +49,7 @@ class Counter:
 
     Attributes
     ----------
-    value, less : Signal
+    value, less : Value
         The number of words or elements left is `value - less - pending`. `pending` is the count of
         the cycle before, if it is still to be subtracted.
     last : Signal
@@ -57,10 +58,22 @@ class Counter:
 
     def __init__(self, most: int, name: str, start: int | None = None):
         bits = max(3, most.bit_length())
-        self.value = Signal(bits, name=f"{name}_value", init=start or 0, reset_less=start is None)
-        self.less = Signal(name=f"{name}_less")
-        self.last = Signal(name=f"{name}_last", init=start in (None, 1))
-        self.pending = Signal(name=f"{name}_pending", reset_less=start is None)
+        self.value = Signal(
+            bits,
+            name=f"{name}_value",
+            init=start or 0,
+            reset_less=start is None,
+            attrs={REMARK: "the number left is value - less - pending"},
+        )
+        self.less: Value = Const(0, 1)
+        self.last = Signal(
+            name=f"{name}_last", init=start in (None, 1), attrs={REMARK: "one is left"}
+        )
+        self.pending = Signal(
+            name=f"{name}_pending",
+            reset_less=start is None,
+            attrs={REMARK: "a count of the cycle before, not subtracted yet"},
+        )
         self.name = name
         self._loads: list[_Load] = []
         self._defaults: list[_Load] = []
@@ -93,6 +106,8 @@ class Counter:
             The number is 2, if it is more than 1.
         """
         self._defaults.append(_Load(on, value, less, last, double))
+        if isinstance(less, Value) and isinstance(self.less, Const):
+            self.less = Signal(name=f"{self.name}_less")
 
     def down(self, on: Value) -> None:
         """Count down by one if `on`, unless the counter is loaded."""
@@ -107,14 +122,19 @@ class Counter:
             down.eq(any_of(self._downs)),
             keeps.eq(~loads & ~any_of([load.on for load in self._defaults])),
         ]
-        cases = [*self._loads, *(replace(each, on=each.on & ~loads) for each in self._defaults)]
+        preloads = [
+            replace(each, on=named(m, f"{self.name}_preloads_{k}", each.on & ~loads))
+            for k, each in enumerate(self._defaults)
+        ]
+        cases = [*self._loads, *preloads]
         last = [(each.on, each.last) for each in cases]
         next_is_last = self._next_is_last(m, loads)
+        stays_last = named(m, f"{self.name}_last_unless_loaded", Mux(down, next_is_last, self.last))
         m.d.sync += [
             self.pending.eq(keeps & down),
-            self.last.eq(pick([(keeps, Mux(down, next_is_last, self.last)), *last], 1)),
+            self.last.eq(pick([(keeps, stays_last), *last], 1)),
         ]
-        self._load_value(m, loads)
+        self._load_value(m, loads, preloads)
 
     def _next_is_last(self, m: Module, loads: Value) -> Value:
         """Return whether one is left after the counter has counted down by one."""
@@ -123,11 +143,22 @@ class Counter:
         m.d.comb += is_small.eq(~self.value[3:].any())
         for k, each in enumerate((two, three, four), 2):
             m.d.comb += each.eq(is_small & (self.value[:3] == k))
-        by_value = Mux(self.pending, Mux(self.less, four, three), Mux(self.less, three, two))
+        by_value = named(
+            m,
+            f"{self.name}_was_second",
+            Mux(self.pending, Mux(self.less, four, three), Mux(self.less, three, two)),
+            "two are left before this count",
+        )
         delayed = [each for each in self._defaults if each.double is not None]
         if not delayed:
             return by_value
-        second, fresh = Signal(name=f"{self.name}_second"), Signal(name=f"{self.name}_fresh")
+        second, fresh = (
+            Signal(name=f"{self.name}_{name}", attrs={REMARK: remark})
+            for name, remark in (
+                ("second", "of a number that is just loaded: it was 2"),
+                ("fresh", "the number is loaded in this cycle, so second counts"),
+            )
+        )
         m.d.sync += [
             # If `fresh`, the value is still to be loaded, so the flag `double` decides.
             fresh.eq(~loads & any_of([each.on for each in delayed])),
@@ -135,19 +166,26 @@ class Counter:
         ]
         return Mux(fresh, second, by_value)
 
-    def _load_value(self, m: Module, loads: Value) -> None:
+    def _load_value(self, m: Module, loads: Value, preloads: list[_Load]) -> None:
         """Add the logic that loads or decrements the value."""
         value = self.value
         cases = list(self._loads)
-        for k, each in enumerate(self._defaults):
+        for k, each in enumerate(preloads):
             on = each.on
             if each.double is not None:
-                on = Signal(name=f"{self.name}_comes_{k}")
-                m.d.sync += on.eq(each.on & ~loads)
-            cases.append(replace(each, on=on & ~loads))
-        keeps = ~any_of([each.on for each in cases])
+                on = Signal(
+                    name=f"{self.name}_comes_{k}",
+                    attrs={REMARK: "a length that was looked up in the cycle before is loaded"},
+                )
+                m.d.sync += on.eq(each.on)
+                on = named(m, f"{self.name}_takes_{k}", on & ~loads)
+            cases.append(replace(each, on=on))
+        keeps = named(m, f"{self.name}_value_keeps", ~any_of([each.on for each in cases]))
         counted = (value - self.pending)[: len(value)]
-        m.d.sync += [
-            value.eq(pick([(keeps, counted), *((c.on, c.value) for c in cases)], len(value))),
-            self.less.eq(pick([(keeps, self.less), *((c.on, c.less) for c in cases)], 1)),
-        ]
+        m.d.sync += value.eq(
+            pick([(keeps, counted), *((c.on, c.value) for c in cases)], len(value))
+        )
+        if isinstance(self.less, Signal):
+            m.d.sync += self.less.eq(
+                pick([(keeps, self.less), *((c.on, c.less) for c in cases)], 1)
+            )

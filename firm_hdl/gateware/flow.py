@@ -9,7 +9,7 @@ from typing import Generic
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.counter import Counter
-from firm_hdl.gateware.positions import any_of, pick
+from firm_hdl.gateware.positions import any_of, named, pick
 from firm_hdl.names.attributes import REMARK
 from firm_hdl.program import AnyState, Program, Transition, state_remark
 
@@ -126,7 +126,9 @@ class Flow(Generic[AnyState]):
             for level in range(program.plan.levels)
         ]
         self.exits = list(self._exits())
-        self.exit_ends = any_of([each.taken for each in self.exits if each.way.to is None])
+        self.exit_ends: Value = Const(0, 1)
+        if ending := [each.taken for each in self.exits if each.way.to is None]:
+            self.exit_ends = named(m, "exit_ends", any_of(ending))
 
     def _add(
         self, name: str, bits: int, values: Sequence[int], attrs: Mapping[str, str] | None = None
@@ -205,7 +207,7 @@ class Flow(Generic[AnyState]):
         cases = [(any_of(on), rest << (unit.bit_length() - 1)) for unit, on in units.items()]
         if len(cases) == 1:
             return cases[0][1]
-        return pick(cases, self.program.plan.bus_bytes.bit_length())
+        return named(self.m, "rest_bytes", pick(cases, self.program.plan.bus_bytes.bit_length()))
 
     def advance(
         self,
@@ -241,7 +243,8 @@ class Flow(Generic[AnyState]):
         """
         m, program, self._is_complete = self.m, self.program, True
         to_exit, to_body = Signal(name="to_exit"), Signal(name="to_body")
-        m.d.comb += [to_exit.eq(moves & ~ends & done), to_body.eq(moves & ~ends & ~done)]
+        moves_on = named(m, "moves_on", moves & ~ends)
+        m.d.comb += [to_exit.eq(moves_on & done), to_body.eq(moves_on & ~done)]
         # At most one exit is taken, and at most one state has a body: each way is one AND, and the
         # next value of a register is an OR of them (`pick`).
         exits = [(each.taken, each.way) for each in self.exits]
@@ -303,4 +306,5 @@ class Flow(Generic[AnyState]):
         for (shift, has_nul), chosen in groups.items():
             less = ~exceeds(count[:shift], int(has_nul)) if shift else Const(1)
             value = count - 1 if has_nul and not shift else count[shift:]
-            self.words.preload(any_of(chosen), value, single, double, less)
+            on = named(self.m, f"begins_words_of_{1 << shift}", any_of(chosen))
+            self.words.preload(on, value, single, double, less)

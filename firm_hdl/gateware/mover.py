@@ -12,7 +12,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.memories import LutMemory
 from firm_hdl.gateware.parse import order_layout
-from firm_hdl.gateware.positions import Ring, any_of, beat_layout, rotate
+from firm_hdl.gateware.positions import Ring, any_of, beat_layout, named, rotate
 from firm_hdl.gateware.signatures import StatusSignature, leaf_shape
 from firm_hdl.names.attributes import REMARK
 from firm_hdl.program import (
@@ -142,8 +142,10 @@ class Mover(wiring.Component):
             attrs={REMARK: "a leaf of the order that is executed, or the status, is full"}
         )
         if first:
-            m.d.sync += slow.eq(Mux(take, any_of(first), any_of(later)))
-        m.d.comb += take.eq(~slow & ~any_of(waits))
+            is_full = named(m, "next_order_is_slow", any_of(first))
+            stays_full = named(m, "order_stays_slow", any_of(later))
+            m.d.sync += slow.eq(Mux(take, is_full, stays_full))
+        m.d.comb += take.eq(~slow & ~named(m, "waits", any_of(waits)))
 
         for writer in writers:
             with m.If(writer.go):
@@ -264,16 +266,21 @@ class _Words:
         self.plan, self.program, self.orders = mover.plan, mover.program, mover.orders
         self.word: dict[str, Signal] = {}
         self.good: dict[str, Signal] = {}
+        # The same, for the bytes of a length that counts.
+        self.good_of_length: dict[str, Signal] = {}
         order = mover.orders.payload
         self.length_good = Signal()
         self.last = Signal()
-        self.final = Signal.like(order.final)
+        has_final = any(
+            each.part is not None and each.part.level is not None
+            for state in self.program.states
+            for each in state.transfers
+        )
+        self.final: Value = Signal.like(order.final) if has_final else Const(0, len(order.final))
         with m.If(take):
-            m.d.sync += [
-                self.length_good.eq(order.length_good),
-                self.last.eq(order.last),
-                self.final.eq(order.final),
-            ]
+            m.d.sync += [self.length_good.eq(order.length_good), self.last.eq(order.last)]
+            if has_final:
+                m.d.sync += self.final.eq(order.final)
         self.carried = Signal(8 * self.program.carried_bytes, reset_less=True)
         # No reset value: so the flip-flops' synchronous reset is free to write the 0 of an error.
         names = leaf_names(self.plan)
@@ -290,19 +297,34 @@ class _Words:
         """Store a word, of which so many bytes are good."""
         bus = self.plan.bus_bytes
         self.word[name] = Signal(8 * bus, name=f"{name}_word", reset_less=True)
-        self.good[name] = Signal(bus, name=f"{name}_good", reset_less=True)
+        self.good[name] = Signal(
+            bus,
+            name=f"{name}_good",
+            reset_less=True,
+            attrs={REMARK: "bit k: byte k of the word is good; else its value is written as 0"},
+        )
+        if any(leaf.kind == "length" for leaf in self.plan.leaves):
+            self.good_of_length[name] = named(
+                m,
+                f"{name}_good_of_length",
+                self.good[name] & self.length_good.replicate(bus),
+                "length_good is 0 for a length over its limit",
+            )
         with m.If(take):
             m.d.sync += [
                 self.word[name].eq(bits),
                 self.good[name].eq(Cat(size > k for k in range(bus))),
             ]
 
-    def _byte(self, state: DeserializerState, at: int) -> tuple[Value, Value]:
+    def _byte(
+        self, state: DeserializerState, at: int, *, of_length: bool = False
+    ) -> tuple[Value, Value]:
         """Return a byte of a state's map, and whether the byte is good."""
         bus = self.plan.bus_bytes
         name = "items" if state.two_word_map and bus > at else "map"
         at %= bus
-        return self.word[name][8 * at : 8 * at + 8], self.good[name][at]
+        good = (self.good_of_length if of_length else self.good)[name]
+        return self.word[name][8 * at : 8 * at + 8], good[at]
 
     def carry(self, m: Module, take: Value) -> None:
         """Store the bytes of a transfer that continues in a later state."""
@@ -328,11 +350,20 @@ class _Words:
                     m.d.sync += self.carried[at : at + 8].eq(value)
 
     def _whole(
-        self, state: DeserializerState, part: Part, begin: int, end: int
+        self,
+        state: DeserializerState,
+        part: Part,
+        begin: int,
+        end: int,
+        *,
+        of_length: bool = False,
     ) -> tuple[Value, Value]:
         """Return bytes of a transfer that is complete with a state, and whether they are good."""
         carried = max(begin, min(end, part.first))
-        here = [self._byte(state, part.at + k - part.first) for k in range(carried, end)]
+        here = [
+            self._byte(state, part.at + k - part.first, of_length=of_length)
+            for k in range(carried, end)
+        ]
         value = Cat(self.carried[8 * begin : 8 * carried], *(byte for byte, _ in here))
         return value, here[-1][1] if here else Const(1)
 
@@ -365,9 +396,10 @@ class _Words:
         elif leaf.kind == "trigger":
             m.d.sync += payload.eq(1)
         else:
-            value, good = self._whole(writer.state, part, 0, part.size)
-            if leaf.kind == "length":
-                value, good = value - transfer.counts_nul, good & self.length_good
+            of_length = leaf.kind == "length"
+            value, good = self._whole(writer.state, part, 0, part.size, of_length=of_length)
+            if of_length:
+                value = value - transfer.counts_nul
             _put(m, payload, value, good, leaf.type)
 
 

@@ -9,7 +9,7 @@ from amaranth.lib import data, stream, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.memories import LutMemory
-from firm_hdl.gateware.positions import Ring, constant_low_lane_bits, rotate
+from firm_hdl.gateware.positions import Ring, constant_low_lane_bits, named, rotate
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.gateware.words import words_layout
 from firm_hdl.program import SerializerProgram, WordLanes
@@ -77,13 +77,14 @@ class Packer(wiring.Component):
         phase: Value | int = plan.header_bytes
         if bus < 8:
             phase = Signal(3, name="phase", init=plan.header_bytes % 8)
+        map_beat = named(m, "map_beat", (ring.beat(base) + words.two_word_map)[: ring.beat_bits])
         m.d.comb += [
             base.eq(self._rounded(m, at, words.to_map, words.map_mask, phase, Const(0))),
             end.eq(self._rounded(m, base, words.to_end, words.end_mask, phase, words.last)),
-            map_at.eq(Cat(ring.lane(base), ring.beat(base) + words.two_word_map)),
+            map_at.eq(Cat(ring.lane(base), map_beat)),
             map_end.eq(map_at + words.map_bytes),
         ]
-        items_at = Mux(words.two_word_map, base, at)
+        items_at = named(m, "items_at", Mux(words.two_word_map, base, at))
         placed = {
             "items": self._rotated(m, "items", takes, items_at, words.items_bytes, program.items),
             "map": self._rotated(m, "map", takes, map_at, words.map_bytes, program.map),
@@ -143,7 +144,7 @@ class Packer(wiring.Component):
             write.data.error.eq(failed),
             write.en.eq(writes & ends_packet),
         ]
-        with m.If(writes & ~waits):
+        with m.If(named(m, "commits", writes & ~waits)):
             m.d.sync += complete.eq(complete_next)
             with m.If(ends_packet):
                 m.d.sync += last.bit_select(slot, 1).eq(1)
@@ -221,6 +222,10 @@ class Packer(wiring.Component):
         """
         program, bus = self.program, self.plan.bus_bytes
         units = {"items": program.items.unit, "map": program.map.unit}
+        frees = [
+            named(m, f"frees_slot_{slot}", reads & (first[:-1] == slot))
+            for slot in range(self.ring.depth)
+        ]
         # Without padding, a byte that is not of items is of a map, or after the packet's end.
         padded = bool(self.plan.header_bytes) or program.aligns
         # By word and lane: the bytes of the beat, and whether the word wrote them.
@@ -231,7 +236,7 @@ class Packer(wiring.Component):
                 used, slot, bytes_ = self._write_lanes(m, *where, first)
                 written: Value = Const(1, 1)
                 if padded or name == "items":
-                    written = self._written(m, f"{name}_{k}", used, slot, reads, first)
+                    written = self._written(m, f"{name}_{k}", used, slot, frees, first)
                 lanes[name].append((bytes_, written))
         # Groups of lanes, as many as the smaller unit, with the memories of both words.
         size = min(units.values())
@@ -281,13 +286,13 @@ class Packer(wiring.Component):
         return used, slot, read.data
 
     def _written(
-        self, m: Module, name: str, used: Value, slot: Value, reads: Value, first: Value
+        self, m: Module, name: str, used: Value, slot: Value, frees: list[Signal], first: Value
     ) -> Value:
         """Return whether lanes of the beat `first` were written."""
         # By slot. A shift of `used` would simulate faster, but takes 2 % more cells.
         has = Signal(self.ring.depth, name=f"{name}_has")
-        for beat in range(self.ring.depth):
-            with m.If(reads & (first[:-1] == beat)):
+        for beat, freed in enumerate(frees):
+            with m.If(freed):
                 m.d.sync += has[beat].eq(0)
             with m.Elif(used & (slot == beat)):
                 m.d.sync += has[beat].eq(1)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data
 
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.plan import Plan
 from firm_hdl.program import align_addend
 from firm_hdl.timing.rings import ring_beats
@@ -17,6 +18,7 @@ __all__ = [
     "any_of",
     "beat_layout",
     "constant_low_lane_bits",
+    "named",
     "pick",
     "rotate",
     "sum_of_three",
@@ -53,9 +55,10 @@ class Ring:
         self.beat_bits = self.depth.bit_length()
         self.bits = self.lane_bits + self.beat_bits
 
-    def position(self, name: str, *, init: int = 0) -> Signal:
+    def position(self, name: str, *, init: int = 0, remark: str = "") -> Signal:
         """Make a signal for a position."""
-        return Signal(self.bits, name=name, init=init)
+        attrs = {REMARK: remark} if remark else None
+        return Signal(self.bits, name=name, init=init, attrs=attrs)
 
     def lane(self, position: Value) -> Value:
         """Return the lane of a byte in its bus word."""
@@ -94,6 +97,13 @@ def beat_layout(plan: Plan) -> data.StructLayout:
             "valid": 1,
         }
     )
+
+
+def named(m: Module, name: str, value: Value, remark: str = "") -> Signal:
+    """Give a value a name in the circuit's text, and perhaps a comment beside the name."""
+    signal = Signal(len(value), name=name, attrs={REMARK: remark} if remark else None)
+    m.d.comb += signal.eq(value)
+    return signal
 
 
 def align_up(
@@ -215,9 +225,17 @@ def constant_low_lane_bits(lanes: Sequence[int], bus_bytes: int) -> tuple[int, i
     return lanes[0] % common, common.bit_length() - 1
 
 
-def sum_of_three(a: Value, b: Value, c: Value) -> Value:
-    """Return a sum modulo `2 ** len(a)` with one carry chain; `b` and `c` are sign-extended."""
+def sum_of_three(m: Module, name: str, a: Value, b: Value, c: Value) -> Value:
+    """Return a sum modulo `2 ** len(a)` with one carry chain; `b` and `c` are sign-extended.
+
+    The sum of three bits at each place is a bit at this place and a carry to the next one.
+    """
     width = len(a)
     b, c = (Cat(x, x[-1].replicate(width))[:width] for x in (b, c))
-    carry = (a & b) | (a & c) | (b & c)
-    return (a ^ b ^ c) + Cat(Const(0, 1), carry[:-1])
+    carry = named(
+        m,
+        f"{name}_carries",
+        ((a & b) | (a & c) | (b & c))[:-1],
+        "of the sum of three numbers, bit by bit; one addition is left",
+    )
+    return named(m, f"{name}_without_carries", a ^ b ^ c) + Cat(Const(0, 1), carry)

@@ -9,9 +9,9 @@ from typing import Any
 from amaranth.hdl import Cat, Const, Module, Signal, Value
 from amaranth.lib import data, stream
 
-from firm_hdl.gateware.positions import Ring, any_of, pick
+from firm_hdl.gateware.positions import Ring, any_of, named, pick
 from firm_hdl.plan import Plan
-from firm_hdl.program import LENGTH_BITS, SerializerProgram, WireByte
+from firm_hdl.program import LENGTH_BITS, SerializerProgram, WireByte, leaf_names
 
 __all__ = ["words_layout", "write_bytes"]
 
@@ -89,6 +89,7 @@ def write_bytes(
     words : View(words_layout(plan))
         `items` and `map` are written.
     """
+    payloads = {k: _wire_bits(m, program, k, each.payload) for k, each in leaves.items()}
     for name in ("items", "map"):
         # By lane: the byte of each state.
         word: list[dict[int, WireByte]] = [{} for _ in range(program.plan.bus_bytes)]
@@ -103,16 +104,15 @@ def write_bytes(
                 for slot, flag in enumerate(served)
                 if any(byte.slot == slot for byte in cases.values())
             ]
-            with m.If(free & ~any_of(taken)):
-                m.d.sync += register.eq(_selected(program, step, leaves, stretch))
+            with m.If(named(m, f"{name}_{lane}_writes", free & ~any_of(taken))):
+                m.d.sync += register.eq(_selected(step, payloads, stretch))
             bits = getattr(words, name)[8 * lane :]
             m.d.comb += bits[: len(register)].eq(register)
 
 
 def _selected(
-    program: SerializerProgram,
     step: Sequence[Value],
-    leaves: Mapping[int, stream.Interface],
+    payloads: Mapping[int, Value],
     stretch: list[dict[int, WireByte]],
 ) -> Value:
     """Return the bytes of a stretch that the state selects; don't care if there are none."""
@@ -124,14 +124,13 @@ def _selected(
             key, value = (-1, constant), Value.cast(Const(constant, 8 * size))
         else:
             key = (byte.leaf, byte.at)
-            bits = _wire_bits(program, byte.leaf, leaves[byte.leaf].payload)
-            value = bits[8 * byte.at : 8 * (byte.at + size)]
+            value = payloads[byte.leaf][8 * byte.at : 8 * (byte.at + size)]
         groups.setdefault(key, (value, []))[1].append(step[number])
     found = [(any_of(on), value) for value, on in groups.values()]
     return found[0][1] if len(found) == 1 else pick(found, 8 * size)
 
 
-def _wire_bits(program: SerializerProgram, leaf: int, payload: Any) -> Value:
+def _wire_bits(m: Module, program: SerializerProgram, leaf: int, payload: Any) -> Value:
     """Return the bits of a leaf's transfer on the wire."""
     match program.plan.leaves[leaf].kind:
         case "items":
@@ -140,7 +139,10 @@ def _wire_bits(program: SerializerProgram, leaf: int, payload: Any) -> Value:
             counts_nul = any(
                 each.has_nul and each.leaf == leaf for each in program.lengths.values()
             )
-            return (payload + counts_nul)[:LENGTH_BITS]
+            if not counts_nul:
+                return Value.cast(payload)
+            name = f"{leaf_names(program.plan)[leaf]}_with_nul"
+            return named(m, name, (payload + 1)[:LENGTH_BITS])
         case _:
             return _item_bits(payload)
 

@@ -12,6 +12,7 @@ from typing import Any
 import firm_hdl
 from firm_hdl import rtlil
 from firm_hdl.errors import DefinitionError, Diagnostic, UserError
+from firm_hdl.export.axis_leaves import axis_module, axis_ports
 from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.design import (
     BuiltDesign,
@@ -34,6 +35,7 @@ from firm_hdl.export.message_ports import (
     struct_files,
 )
 from firm_hdl.export.verilog.backend import waivers
+from firm_hdl.export.vivado_ip import Ip, ip_files
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
@@ -73,6 +75,7 @@ def build_node(
     force: bool = False,
     stimuli: Stimuli | None = None,
     datasheet: bool = False,
+    ip: bool = False,
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -87,6 +90,8 @@ def build_node(
         only.
     datasheet : bool
         Write the datasheet, too. It has the figures of bitstreams that are in the folder.
+    ip : bool
+        Write an IP of Vivado, too; of a node whose link is a stream.
 
     Raises
     ------
@@ -94,6 +99,9 @@ def build_node(
         If the accelerator cannot be used, the node is too large, two design units would have one
         name, or the folder cannot be written.
     """
+    if ip and description.link.kind != "stream":
+        message = f"IP needs the link 'stream', which is AXI4-Stream, not '{description.link.kind}'"
+        raise DefinitionError([Diagnostic(message=message, span=description.link_span)])
     name = identifier(description.node)
     if description.hdl is not None and description.hdl.entity.lower() == name.lower():
         # Both would be one entity.
@@ -114,6 +122,9 @@ def build_node(
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
     own = accelerator_files(description, node.accelerator)
+    if ip and (own.language == "vhdl" or own.headers):
+        message = "IP takes an accelerator in Amaranth, or in Verilog without include files"
+        raise DefinitionError([Diagnostic(message=message, span=description.accelerator_span)])
     facts = facts_of(description)
     accelerator = {f: digest(t) for f, t in {**own.texts, **own.headers}.items()}
     placed = placed_on(folder, digest(circuit), accelerator) if datasheet else None
@@ -127,6 +138,7 @@ def build_node(
                 "frames_sha256": None if script is None else digest(script.text),
                 "accelerator_files": accelerator,
                 **({} if placed is None else {"datasheet": placed}),
+                **({"ip": "vivado"} if ip else {}),
             },
             circuit,
         ),
@@ -140,7 +152,7 @@ def build_node(
         },
         ports=[asdict(port) for port in ports],
         make_files=lambda: _files(
-            description, name, circuit, ports, messages, script, own, placed=placed
+            description, name, circuit, ports, messages, script, own, placed=placed, ip=ip
         ),
         force=force,
     )
@@ -156,6 +168,7 @@ def _files(
     own: AcceleratorFiles,
     *,
     placed: Mapping[str, Any] | None,
+    ip: bool,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -208,8 +221,9 @@ def _files(
             description, name, ports, module=module, vhdl_ports=vhdl_ports, placed=placed
         )
         documents[DATASHEET] = page
+    verilog = verilog_file(netlist, name=name, header=header)
     return {
-        **verilog_file(netlist, name=name, header=header),
+        **verilog,
         "waivers.vlt": waivers([module]) + lint.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **({} if is_vhdl else own.texts),
@@ -226,6 +240,11 @@ def _files(
         ),
         **benches,
         **documents,
+        **(
+            ip_files(_ip(description, name, ports, messages, {**own.texts, **verilog}))
+            if ip
+            else {}
+        ),
     }
 
 
@@ -248,6 +267,32 @@ def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict
         for board, each in sorted(found.items())
         if each.get("bitstream") and of.items() <= each["inputs"].items()
     }
+
+
+def _ip(
+    description: Description,
+    name: str,
+    ports: Sequence[ComponentPort],
+    messages: Sequence[RecordPort],
+    files: Mapping[str, str],
+) -> Ip:
+    """Return the node as IP. Messages that come out of it are AXI4-Stream."""
+    module = verilog_module(name)
+    members = {name: port.member for each in messages for name, port in each.ports.items()}
+    shown: Sequence[Any] = ports
+    if members:
+        inner, module = module, f"{name}_axis_verilog"
+        shown = axis_ports(ports, members)
+        files = {**files, f"{module}.v": axis_module(module, inner, shown, "")}
+    return Ip(
+        name=name,
+        library="node",
+        module=module,
+        files=files,
+        ports=shown,
+        title=f"Node {name}",
+        description=f"Node {description.node} of ROS {description.distro}: frames on AXI4-Stream.",
+    )
 
 
 def _bench(name: str, own: AcceleratorFiles) -> dict[str, str]:

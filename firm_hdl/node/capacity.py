@@ -9,23 +9,50 @@ from firm_hdl.node.bytestream import CRC_BYTES
 from firm_hdl.node.description import Description, Direction, Store
 from firm_hdl.node.frame import HEADER_BYTES
 
-__all__ = ["bytes_on_link", "link_bytes_per_second", "most_bytes", "rate_problems", "size_problems"]
+__all__ = [
+    "assembly_bytes",
+    "bytes_on_link",
+    "largest_bytes",
+    "link_bytes_per_second",
+    "most_bytes",
+    "rate_problems",
+    "size_problems",
+]
 
 _WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
 _MOST_NAMED = 8
 _GIGABIT_BYTES_PER_SECOND = 125e6
 _MII_BYTES_PER_SECOND = 12.5e6
 _MOST_FRAGMENTS = 1 << 16
-# Bytes of an RTPS datagram besides the payload: of a reply, with padding; of what peers send.
-_RTPS_SENT, _RTPS_RECEIVED = 155, 256
+# Bytes of an RTPS datagram besides the payload: of a reply with a heartbeat and padding; of what
+# peers send.
+_RTPS_SENT, _RTPS_RECEIVED = 167, 256
+# What a datagram has besides a sample, at most. With 1,472 bytes, peers cut samples of more than
+# 1,280 bytes: first those of firm-hdl, then Cyclone DDS, at 1,344.
+_RTPS_HEADS = 192
+
+
+def largest_bytes(description: Description, store: Store) -> int:
+    """Return the size of the largest message that a topic has in a direction."""
+    most = metrics_of(store.message, description.wire).max_bytes
+    sizes = (store.memory_bytes, store.max_message_bytes)
+    return min(*sizes, most) if most is not None else min(sizes)
+
+
+def assembly_bytes(datagram_bytes: int, largest: int) -> int:
+    """Return the memory in which a topic puts a sample together that comes in fragments.
+
+    It is a power of two, or 0 if the largest message fits into a datagram.
+    """
+    is_cut = largest > datagram_bytes - _RTPS_HEADS
+    return 1 << (largest - 1).bit_length() if is_cut else 0
 
 
 def most_bytes(description: Description, direction: Direction, store: Store) -> int:
     """Return the size of the largest message that has room in all memories on its way."""
     link, most = description.link, store.memory_bytes
     if link.kind == "rtps":
-        room = link.memory_bytes - _RTPS_RECEIVED
-        return min(most, room if direction == "in" else link.datagram_bytes - _RTPS_SENT)
+        return min(most, link.memory_bytes - _RTPS_RECEIVED) if direction == "in" else most
     if direction == "in" and link.kind != "stream":
         most = min(most, link.memory_bytes - HEADER_BYTES)
     if link.frame_bytes is not None:
@@ -37,7 +64,8 @@ def bytes_on_link(description: Description, packet_bytes: int) -> int:
     """Return how many bytes a message takes on the link, at least."""
     link = description.link
     if link.kind == "rtps":
-        return packet_bytes + _RTPS_SENT
+        room = link.datagram_bytes - _RTPS_SENT
+        return packet_bytes + _RTPS_SENT * max(1, -(-packet_bytes // max(1, room)))
     if link.kind == "uart":
         # A byte of COBS, and a byte 0 before and after.
         return HEADER_BYTES + packet_bytes + CRC_BYTES + 3

@@ -11,11 +11,12 @@ import firm_hdl
 from firm_hdl.drawing.svg import Figure
 from firm_hdl.estimates import placed_cells
 from firm_hdl.export.component import ComponentPort
-from firm_hdl.export.datasheet import definitions_of, how_text, render, size_text, sums_of
+from firm_hdl.export.datasheet import how_text, render, size_text, sums_of
 from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
 from firm_hdl.export.datasheet.steps import plan_figure
 from firm_hdl.export.datasheet.waves import waves_of
+from firm_hdl.export.facts import definitions_of
 from firm_hdl.export.vhdl.wrapper import instance
 from firm_hdl.node.description import Description, Store
 from firm_hdl.node.frame import HEADER

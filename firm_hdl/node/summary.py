@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 from firm_hdl.estimates import Estimate, estimates_of, part_estimate, placed_cells
 from firm_hdl.metrics import Metrics, metrics_of
-from firm_hdl.node.capacity import rate_problems, size_problems
+from firm_hdl.node.capacity import assembly_bytes, rate_problems, size_problems
 from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import (
     SERVICE_PARTS,
@@ -271,9 +271,13 @@ def memory_bytes(facts: Mapping[str, Any]) -> int:
         memory += sum(store["memory_bytes"] for store in packets.values())
         # A service stores its requests before the gate, too.
         memory += packets["in"]["memory_bytes"] if topic["kind"] == "serve" else 0
-        if facts["link"]["kind"] == "rtps" and "out" in packets:
-            # Samples are kept for readers that miss them.
-            memory += packets["out"]["memory_bytes"]
+        if facts["link"]["kind"] == "rtps":
+            # Samples are kept for readers that miss them, and put together from fragments.
+            memory += packets["out"]["memory_bytes"] if "out" in packets else 0
+            if came := packets.get("in"):
+                sizes = (came[each] for each in ("memory_bytes", "max_message_bytes", "max_bytes"))
+                largest = min(each for each in sizes if each is not None)
+                memory += assembly_bytes(facts["link"]["datagram_bytes"], largest)
     return memory
 
 

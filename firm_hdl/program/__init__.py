@@ -25,9 +25,10 @@ from firm_hdl.program.serializer import (
     serializer_program,
 )
 from firm_hdl.program.state import AnyState, Part, Program, State, Transfer
-from firm_hdl.program.table import MANY_STATES, lane_remark, program_lines, state_remark
+from firm_hdl.program.table import LEGEND, MANY_STATES, lane_remark, program_lines, state_remark
 
 __all__ = [
+    "LEGEND",
     "LENGTH_BITS",
     "MANY_STATES",
     "AnyState",

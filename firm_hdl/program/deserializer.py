@@ -10,7 +10,7 @@ from operator import itemgetter
 from firm_hdl.plan.tree import Fixed, Plan, Run, Step
 from firm_hdl.program.control import Control, control_of, start_of
 from firm_hdl.program.lanes import StartLanes, start_lanes, word_lanes
-from firm_hdl.program.lengths import Length, NextMap, length_of
+from firm_hdl.program.lengths import Length, NextMap, length_of, with_columns
 from firm_hdl.program.names import state_names, unique
 from firm_hdl.program.state import Program, State, common_fields, repeated_leaves
 
@@ -147,6 +147,8 @@ def deserializer_program(plan: Plan, *, has_leaves: bool = True) -> Deserializer
         _state(plan, index, name, control, is_leading=index < leading, has_leaves=has_leaves)
         for index, name in enumerate(names)
     )
+    lengths = with_columns({s.number: s.length for s in states if s.length is not None})
+    states = tuple(replace(each, length=lengths.get(each.number)) for each in states)
     parts = [part for step in plan.steps if isinstance(step, Step) for part in step.parts]
     return DeserializerProgram(
         plan=plan,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
+from firm_hdl.names.identifiers import first_free
 from firm_hdl.plan.tree import Charge, Constant, Loop, Plan
 from firm_hdl.program.control import Control
 
-__all__ = ["Length", "NextMap", "length_of"]
+__all__ = ["Length", "NextMap", "length_of", "with_columns"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +31,9 @@ class NextMap:
 class Length:
     """A length, with which a state begins a loop or a run.
 
-    The properties that are texts name columns of the table of decoded lengths. States whose lengths
-    need the same value share a column. So the number of columns grows with the kinds of lengths,
-    not with the number of lengths.
+    What is a text names a column of the table of decoded lengths. States whose lengths need the
+    same value share a column. So the number of columns grows with the kinds of lengths, not with
+    the number of lengths.
 
     Attributes
     ----------
@@ -51,6 +53,12 @@ class Length:
         The elements have no bytes, and nobody asks for them: only their number is checked.
     nexts : tuple of NextMap
         Of a run: what may follow its items.
+    over : str
+        Column: the value is above `max_count`.
+    skips : str
+        Column: the body is skipped: no element, no word before the rest, or an illegal length.
+    charged : str or None
+        Column: the value is large enough to be charged to the budget; `None`: it claims nothing.
     """
 
     leaf: int
@@ -63,6 +71,9 @@ class Length:
     charge: Charge | None = None
     counts_nothing: bool = False
     nexts: tuple[NextMap, ...] = ()
+    over: str = ""
+    skips: str = ""
+    charged: str | None = None
 
     @property
     def max_count(self) -> int:
@@ -78,18 +89,8 @@ class Length:
     def kind(self) -> str:
         """What is counted: equal for lengths whose items have one size."""
         if self.level is not None:
-            return "nothing" if self.counts_nothing else "loop"
-        return f"run_{self.item_bytes}{'_nul' if self.has_nul else ''}"
-
-    @property
-    def over(self) -> str:
-        """The value is above `max_count`."""
-        return f"over_{self.max_count}"
-
-    @property
-    def skips(self) -> str:
-        """The body is skipped: no element, no word before the rest, or an illegal length."""
-        return f"skips_{self.kind}_{self.max_count}"
+            return "nothing" if self.counts_nothing else "elements"
+        return "string" if self.has_nul else f"items_of_{self.item_bytes}"
 
     @property
     def at_most_one_pass(self) -> str:
@@ -106,14 +107,34 @@ class Length:
         """Items of the rest."""
         return f"rest_{self.kind}"
 
-    @property
-    def charged(self) -> str | None:
-        """The value is large enough to be charged to the budget; `None`: it claims nothing."""
-        return None if self.charge is None else f"charged_{self.charge.charged_from}"
-
     def next_last_at(self, following: NextMap) -> str:
         """The last byte of what follows, if all items are in the rest."""
-        return f"last_at_{self.kind}_{self.align}_{following.align}_{following.last_offset + 1}"
+        at = f"_at_{self.align}" if self.align > 1 else ""
+        what = f"{following.last_offset + 1}_at_{following.align}"
+        return f"last_of_{what}_after_{self.kind}{at}"
+
+
+def with_columns(lengths: Mapping[int, Length]) -> dict[int, Length]:
+    """Name the columns that depend on limits: after what is counted, not after the limits."""
+    given: dict[tuple[object, ...], str] = {}
+
+    def name(what: str, length: Length, *key: object) -> str:
+        key = what, *key
+        if key not in given:
+            given[key] = first_free(f"{what}_{length.kind}", given.values())
+        return given[key]
+
+    return {
+        number: replace(
+            each,
+            over=name("over", each, each.max_count),
+            skips=name("skips", each, each.kind, each.max_count),
+            charged=None
+            if each.charge is None
+            else name("charged", each, each.charge.charged_from),
+        )
+        for number, each in lengths.items()
+    }
 
 
 def length_of(plan: Plan, control: Control) -> Length | None:

@@ -21,7 +21,7 @@ from firm_hdl.program.serializer import (
 )
 from firm_hdl.program.state import AnyState, Program, State, Transfer
 
-__all__ = ["MANY_STATES", "lane_remark", "program_lines", "program_text", "state_remark"]
+__all__ = ["LEGEND", "MANY_STATES", "lane_remark", "program_lines", "program_text", "state_remark"]
 
 MANY_STATES = 64
 """Most states that comments in a circuit's text describe in full."""
@@ -29,12 +29,15 @@ MANY_STATES = 64
 _END = "end of the packet"
 
 LEGEND = """\
-# One line a state: its number and name, what it takes, and where it leads. "map" and "items" are
-# the words of a state: of its fixed part, and of the items of a run or of their rest. "unit 4":
-# their bytes start and end at multiples of 4. "to 2 (+8)": the last byte of state 2 is 8 bytes
-# after that of this state; with "align 4 | 3", then down to a multiple of 4, and 3 more. "while
-# level 0": while the outermost loop has elements left.
-# "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
+# One line a step: its number and name, what it takes, and where it leads. A step is one cycle.
+# "map": bytes at fixed places, at most two bus words. "items": a bus word of a string or an
+# array, which is a run of them. "rest": the last items of a run, which the next step takes
+# before its map; "rest x 8": of 8 bytes each. "lanes": the bytes of the bus, from 0 on. "unit
+# 4": bytes start and end at multiples of 4. "body": the step after a length that more than a
+# rest follows. "level 0": the outermost sequence of elements; "while level 0": while it has
+# elements left. "to 2 (+8)": the last byte of step 2 is 8 bytes after that of this step; with
+# "align 4 | 3", then down to a multiple of 4, and 3 more: from byte 21, "+6, align 4 | 3" leads
+# to byte 27. "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
 """
 
 
@@ -73,7 +76,9 @@ def lane_remark(program: DeserializerProgram, lane: int) -> str:
     """Return which lengths may end in a lane, and what the kinds in the names of columns count."""
     ends = [program.lengths[k] for k in program.length_lanes[lane] if k in program.lengths]
     leaves = " ".join(str(program.plan.leaves[each.leaf]) for each in ends) or "none"
-    kinds = {each.kind: _counted(each) for each in program.lengths.values()}
+    kinds = {
+        each.kind: f"{_counted(each)} up to {each.max_count}" for each in program.lengths.values()
+    }
     texts = [f"lengths that may end in lane {lane}: {leaves}"]
     texts += [f"{kind}: {counted}" for kind, counted in kinds.items()]
     return shorten("; ".join(texts), 300, placeholder=" ...")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Mux, Signal, Value
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.component import Component
 from firm_hdl.registers.axi_lite import WordBusSignature
-from firm_hdl.registers.table import WORD_BYTES, RegisterMap
+from firm_hdl.registers.table import WORD_BYTES, Register, RegisterMap
 
 __all__ = ["RegisterBlock"]
 
@@ -57,34 +58,25 @@ class RegisterBlock(Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         bus = self.bus
-        # Each register is a case of both switches, so that elaboration takes linear time.
-        shown: dict[int, list[tuple[int, Value | int, int]]] = {}
-        for name, register, field in self.registers.fields():
-            value: Value | int = field.reset
-            if field.kind in ("status", "setting", "event"):
-                value = getattr(self, name)
-            place = shown.setdefault(register.address, [])
-            place.append((field.low, value, field.bits))
-        m.d.comb += [bus.read_fails.eq(1), bus.write_fails.eq(1)]
+        m.d.comb += bus.read_fails.eq(1)
         with m.Switch(bus.read_word):
-            for address, places in shown.items():
-                with m.Case(address // WORD_BYTES):
-                    m.d.comb += bus.read_fails.eq(0)
-                    m.d.comb += [bus.read_data[low : low + n].eq(v) for low, v, n in places]
+            for register, word in self._words():
+                with m.Case(register.address // WORD_BYTES):
+                    m.d.comb += [bus.read_fails.eq(0), bus.read_data.eq(word)]
+        # Comparisons, and no cases: in Amaranth, n signals of n cases take quadratic time.
         selected: dict[int, Signal] = {}
-        with m.Switch(bus.write_word):
-            for register in self.registers.registers:
-                if register.is_written:
-                    here = Signal(name=f"writes_{register.name}")
-                    selected[register.address] = here
-                    with m.Case(register.address // WORD_BYTES):
-                        m.d.comb += [bus.write_fails.eq(0), here.eq(bus.writes)]
+        for register in self.registers.registers:
+            if register.is_written:
+                here = Signal(name=f"selects_{register.name}")
+                selected[register.address] = here
+                m.d.comb += here.eq(bus.write_word == register.address // WORD_BYTES)
+        m.d.comb += bus.write_fails.eq(~Cat(selected.values()).any())
         mask = Cat(bit.replicate(8) for bit in bus.write_bytes)
         for name, register, field in self.registers.fields():
             if field.kind not in ("setting", "pulse", "event"):
                 continue
             value, bits = getattr(self, name), slice(field.low, field.low + field.bits)
-            writes = selected[register.address]
+            writes = bus.writes & selected[register.address]
             ones = bus.write_data[bits] & mask[bits]
             if field.kind == "setting":
                 m.d.sync += value.eq(
@@ -100,3 +92,19 @@ class RegisterBlock(Component):
                 kept = Mux(writes, value & ~ones, value)
                 m.d.sync += value.eq(Mux(self.clears, 0, kept) | getattr(self, f"sets_{name}"))
         return m
+
+    def _words(self) -> Iterator[tuple[Register, Value]]:
+        """Yield the registers, and what is read from each."""
+        members = {id(field): name for name, _, field in self.registers.fields()}
+        for register in self.registers.registers:
+            parts: list[Value] = []
+            end = 0
+            for field in sorted(register.fields, key=lambda field: field.low):
+                value: Value = Const(field.reset, field.bits)
+                if field.kind in ("status", "setting", "event"):
+                    value = getattr(self, members[id(field)])
+                elif field.kind == "pulse":
+                    value = Const(0, field.bits)
+                parts += [Const(0, field.low - end), value]
+                end = field.low + field.bits
+            yield register, Cat(parts)

@@ -15,7 +15,7 @@ from amaranth.lib import data
 
 from firm_hdl.gateware.record_layout import record_layout
 from firm_hdl.model import Array, FieldType, Message, Primitive
-from firm_hdl.names.identifiers import flat_names, identifier
+from firm_hdl.names.identifiers import first_free, identifier
 from firm_hdl.plan import Direction, Plan
 from firm_hdl.registers.table import WORD_BYTES, Field, Kind, Register, RegisterMap
 
@@ -151,8 +151,16 @@ def members_of(message: Message, shape: Any) -> Iterator[tuple[str, FieldType, A
     kinds: dict[str, FieldType] = {field.name: field.type for field in message.fields}
     for name, part in shape.members.items():
         # A message without fields has a byte or a trigger, which software does not need.
-        if name in kinds and size_of(kinds[name], part)[0]:
+        if name in kinds and _has_values(kinds[name], part):
             yield name, kinds[name], part
+
+
+def _has_values(kind: FieldType, shape: Any) -> bool:
+    if isinstance(kind, Array):
+        return _has_values(kind.element, shape.elem_shape)
+    if isinstance(kind, Message):
+        return any(True for _ in members_of(kind, shape))
+    return True
 
 
 def _items(
@@ -181,11 +189,15 @@ def _words(
 ) -> tuple[list[Register], dict[str, tuple[int, int]]]:
     """Return the registers of the block, and the bits of the record that each field has."""
     kind: Kind = "setting" if direction == "serializer" else "status"
-    names = flat_names(_spelled(item) for item in items)
+    # No name may be that of a half of another one, or of a word.
+    taken: set[str] = set()
     # By word: name, lowest bit in the word, and bits of the record.
     found: dict[int, list[tuple[str, int, int, int, str]]] = {}
     for item in items:
-        name = names[_spelled(item)]
+        name = first_free(
+            identifier("_".join(["message", *map(str, item.path)])), taken, _with_halves
+        )
+        taken |= {each.lower() for each in _with_halves(name)}
         what = f"{_dotted(item)}: {item.type}"
         bits = item.type.bits
         for part in range(-(-bits // 32)):
@@ -198,7 +210,8 @@ def _words(
     padding = Field(name="padding", low=0, bits=32, kind=unused, meaning="No value has it.")
     for word in range(count):
         places = found.get(word, [])
-        alone = places[0][0] if len(places) == 1 else f"message_word_{word}"
+        alone = places[0][0] if len(places) == 1 else first_free(f"message_word_{word}", taken)
+        taken.add(alone.lower())
         fields = [] if places else [padding]
         for name, low, bit, bits, what in places:
             full = name if len(places) == 1 else f"{alone}_{name}"
@@ -215,8 +228,8 @@ def _words(
     return registers, pieces
 
 
-def _spelled(item: Item) -> tuple[str, ...]:
-    return "message", *map(str, item.path)
+def _with_halves(name: str) -> tuple[str, ...]:
+    return name, f"{name}_low", f"{name}_high"
 
 
 def _dotted(item: Item) -> str:
@@ -227,109 +240,86 @@ def _dotted(item: Item) -> str:
 def _common(direction: Direction, fingerprint: int) -> list[Register]:
     """Return the registers before the message."""
     comes = direction == "deserializer"
-
-    def constant(name: str, low: int, bits: int, value: int, meaning: str) -> Field:
-        return Field(name=name, low=low, bits=bits, kind="constant", meaning=meaning, reset=value)
-
-    def word(name: str, address: int, meaning: str, *fields: Field) -> Register:
-        return Register(name=name, address=address, fields=fields, meaning=meaning)
-
-    def counter(name: str, address: int, meaning: str) -> Register:
-        text = f"{meaning} As it was at the last latch; it stops at its largest value."
-        only = Field(name=name, low=0, bits=32, kind="status", meaning=text)
-        return word(name, address, text, only)
-
-    def alone(name: str, address: int, value: int, meaning: str) -> Register:
-        return word(name, address, meaning, constant(name, 0, 32, value, meaning))
-
     low, high = fingerprint & 0xFFFF_FFFF, fingerprint >> 32
-    commit = (
-        "Show the newest message in the words."
-        if comes
-        else "Send the words as a message, unless the one before is still busy."
-    )
-    state = (
-        (
-            Field(
-                name="new",
-                low=0,
-                bits=1,
-                kind="status",
-                meaning="A good message came after the last commit.",
-            ),
-            Field(name="shown", low=1, bits=1, kind="status", meaning="The words are a message."),
-        )
-        if comes
-        else (
-            Field(
-                name="busy",
-                low=0,
-                bits=1,
-                kind="status",
-                meaning="The serializer takes the message of the last commit.",
-            ),
-        )
-    )
-    code = "Status of the last packet; 0 is OK."
-    event = "A good message came." if comes else "A message was sent."
-    error = "A packet had an error."
-    bits = {"message": (0, event), "error": (1, error)}
-    skipped = (
-        "Good messages that a newer one replaced before a commit."
-        if comes
-        else "Commits while busy, which did nothing."
-    )
-    return [
-        alone("id", 0x00, ID, "The text FIRM."),
-        word(
-            "version",
-            0x04,
-            "Of the registers before the message.",
-            constant("minor", 0, 16, VERSION[1], "Raised by what only adds registers."),
-            constant("major", 16, 16, VERSION[0], "Raised by all other changes."),
-        ),
-        alone("fingerprint_low", 0x08, low, "Of type, wire format, direction and layout."),
-        alone("fingerprint_high", 0x0C, high, "Of type, wire format, direction and layout."),
-        word(
-            "control",
-            0x10,
-            "A written 1 acts once.",
-            Field(name="commit", low=0, bits=1, kind="pulse", meaning=commit),
-            Field(name="latch", low=1, bits=1, kind="pulse", meaning="Latch all counters."),
-            Field(
-                name="reset",
-                low=2,
-                bits=1,
-                kind="pulse",
-                meaning="Reset all registers. Packets under way are not cut.",
-            ),
-        ),
-        word(
-            "status",
-            0x14,
-            "The state of the converter.",
-            *state,
-            Field(name="code", low=8, bits=8, kind="status", meaning=code),
-        ),
-        word(
-            "interrupt_enable",
-            0x18,
-            "Events that raise the interrupt.",
-            *(
-                Field(name=name, low=low, bits=1, kind="setting", meaning=text)
-                for name, (low, text) in bits.items()
-            ),
-        ),
-        word(
-            "interrupt",
-            0x1C,
-            "Events; a written 1 clears one.",
-            *(
-                Field(name=name, low=low, bits=1, kind="event", meaning=text)
-                for name, (low, text) in bits.items()
-            ),
-        ),
-        counter("messages", 0x20, "Good messages." if comes else "Messages sent."),
-        counter("errors", 0x24, "Packets with an error."),
-        counter("skipped", 0x28, skipped),
+    identity = "Of type, wire format, direction and layout."
+    event, error = ("A good message came.", "A packet had an error.")
+    skipped = "Good messages that a newer one replaced before a commit."
+    commit = "Show the newest message in the words."
+    state = [
+        _field("status", "new", 0, 1, "A good message came after the last commit."),
+        _field("status", "shown", 1, 1, "The words are a message."),
     ]
+    if not comes:
+        event, skipped = "A message was sent.", "Commits while busy, which did nothing."
+        commit = "Send the words as a message, unless the one before is still busy."
+        taken = "The serializer takes the message of the last commit."
+        state = [_field("status", "busy", 0, 1, taken)]
+    return [
+        _word(0x00, "id", "constant", "The text FIRM.", ID),
+        Register(
+            name="version",
+            address=0x04,
+            meaning="Of the registers before the message.",
+            fields=(
+                _field("constant", "minor", 0, 16, "Raised by what only adds.", VERSION[1]),
+                _field("constant", "major", 16, 16, "Raised by all other changes.", VERSION[0]),
+            ),
+        ),
+        _word(0x08, "fingerprint_low", "constant", identity, low),
+        _word(0x0C, "fingerprint_high", "constant", identity, high),
+        Register(
+            name="control",
+            address=0x10,
+            meaning="A written 1 acts once.",
+            fields=(
+                _field("pulse", "commit", 0, 1, commit),
+                _field("pulse", "latch", 1, 1, "Latch all counters."),
+                _field("pulse", "reset", 2, 1, "Reset all registers; cuts no packet."),
+            ),
+        ),
+        Register(
+            name="status",
+            address=0x14,
+            meaning="The state of the converter.",
+            fields=(
+                *state,
+                _field("status", "code", 8, 8, "Status of the last packet; 0 is OK."),
+            ),
+        ),
+        Register(
+            name="interrupt_enable",
+            address=0x18,
+            meaning="Events that raise the interrupt.",
+            fields=(
+                _field("setting", "message", 0, 1, event),
+                _field("setting", "error", 1, 1, error),
+            ),
+        ),
+        Register(
+            name="interrupt",
+            address=0x1C,
+            meaning="Events; a written 1 clears one.",
+            fields=(
+                _field("event", "message", 0, 1, event),
+                _field("event", "error", 1, 1, error),
+            ),
+        ),
+        _word(
+            0x20, "messages", "status", f"{'Good messages' if comes else 'Messages sent'}.{_OLD}"
+        ),
+        _word(0x24, "errors", "status", f"Packets with an error.{_OLD}"),
+        _word(0x28, "skipped", "status", f"{skipped}{_OLD}"),
+    ]
+
+
+_OLD = " As at the last latch; stops at its largest value."
+
+
+def _field(kind: Kind, name: str, low: int, bits: int, meaning: str, reset: int = 0) -> Field:
+    return Field(name=name, low=low, bits=bits, kind=kind, meaning=meaning, reset=reset)
+
+
+def _word(address: int, name: str, kind: Kind, meaning: str, reset: int = 0) -> Register:
+    """Return a register with one field."""
+    only = _field(kind, name, 0, 32, meaning, reset)
+    return Register(name=name, address=address, fields=(only,), meaning=meaning)

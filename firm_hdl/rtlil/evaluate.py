@@ -71,6 +71,8 @@ def _mux(select: Spec, a: Spec, b: Spec) -> Spec | None:
     chosen = constant(select)
     if chosen is not None:
         return b if chosen else a
+    if constant(a) == 0 and constant(b) == 1 and spec_width(a) == spec_width(b) == 1:
+        return select
     return a if a == b else None
 
 
@@ -169,6 +171,9 @@ def _compared(kind: str, a: int | None, b: int | None, left: Spec, right: Spec) 
         return _bits(0, 1)
     if (kind, b) == ("$ge", 0) or (kind, a) == ("$le", 0):
         return _bits(1, 1)
+    for value, other in ((a, right), (b, left)):
+        if spec_width(other) == 1 and (kind, value) in (("$eq", 1), ("$ne", 0)):
+            return other
     if left == right:
         return _bits(int(kind in ("$eq", "$le", "$ge")), 1)
     return None

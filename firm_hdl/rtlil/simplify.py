@@ -4,7 +4,7 @@ Amaranth does not evaluate operators on constants. Generated circuits have many 
 example, a comparison with a constant 0, or a condition that no input of the module can meet.
 Neither does Amaranth notice that two operators compute the same: here, one of them remains.
 Registers with a constant value are replaced, too, and so is all that waits for an edge of a
-constant clock. Other parts of memories, and instances, stay. A constant signal keeps its name.
+constant clock. Other parts of memories, and instances, stay.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ and 8 MB of text. RTLIL extends a constant that has fewer digits than bits by it
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -20,6 +21,10 @@ from firm_hdl.names.attributes import PURPOSE
 from firm_hdl.rtlil.connections import check_connections
 
 __all__ = ["convert_fragment", "rtlil_of"]
+
+
+_SECTION = re.compile(r"^\w+\n-{3,}$", re.MULTILINE)
+_ROLE = re.compile(r":\w+:`\.?(\w+)`")
 
 
 def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None) -> str:
@@ -92,14 +97,17 @@ def convert_fragment(fragment: Fragment | _ir.Design, ports: Any, *, name: str) 
 
 
 def _purposes(fragment: Fragment, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the paths of modules, and the class of each with the first sentence about it."""
+    """Yield the paths of modules, and what their docstrings say about them."""
     for origin in (fragment.origins or ())[:1]:
         text = inspect.getdoc(type(origin)) or ""
         if text and not type(origin).__module__.startswith("amaranth."):
-            yield (
-                path,
-                f"{type(origin).__name__}: {' '.join(text.partition(chr(10) * 2)[0].split())}",
-            )
+            first, _, rest = text.partition("\n\n")
+            purpose = f"{type(origin).__name__}: {' '.join(first.split())}"
+            if type(origin).__module__.startswith("firm_hdl."):
+                # All before the sections of a docstring, such as "Parameters", in plain text.
+                rest = _SECTION.split(rest)[0].strip()
+                purpose += "\n\n" * bool(rest) + _ROLE.sub(r"\1", rest).replace("::\n", ":\n")
+            yield path, purpose
     for part, name, _ in fragment.subfragments:
         if name is not None:
             yield from _purposes(part, (*path, name))

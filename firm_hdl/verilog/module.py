@@ -79,6 +79,11 @@ class _Statements(Statements):
         )
         yield from self.if_([Arm(self.values.boolean(cell.ports["S"]), (b,)), Arm(None, (a,))])
 
+    def choice_of(self, target: Slice, select: Spec, b: Spec, a: Spec) -> str:
+        name = part(self.targets[target.wire], target.low, target.width)
+        one, other = (self.values.value(spec).operand() for spec in (b, a))
+        return f"{name} {self.operator} {self.values.boolean(select).operand()} ? {one} : {other};"
+
     def case(self, switch: Switch, plain: list[tuple[list[str], Case]]) -> Iterator[str]:
         yield f"case ({self.values.value(switch.selector).text})"
         for patterns, case in plain:
@@ -250,7 +255,7 @@ class ModuleWriter(Writer):
         size = max(map(len, ways), default=0)
         for index, (port, way) in enumerate(zip(ports, ways, strict=True)):
             end = "" if index == len(ports) - 1 else ","
-            yield f"  {way:<{size}} {port.outer.name}{end}{self.remark(port.wire)}"
+            yield f"  {way:<{size}} {port.outer.name}{end}{self.remark(port.wire, layout=True)}"
         if ports:
             yield ");"
 
@@ -272,7 +277,7 @@ class ModuleWriter(Writer):
                     start = f" = {literal(bits)}"
                 kind = "reg" if role == "register" else "wire"
                 text = f"{kind} {size}{each.declared.name}{start};"
-                yield f"  {text}{self.remark(each.wire)}"
+                yield f"  {text}{self.remark(each.wire, layout=role == 'register')}"
         for memory in self.memories:
             yield ""
             counter = self.names.scope.give(f"{memory.name}_at")

@@ -121,7 +121,7 @@ class Cells:
                 return chain(_REDUCTIONS[kind], *bits) if bits else atom("'0'")
             return prefix(_REDUCTIONS[kind], values.unsigned(ports["A"]))
         if kind == "$mux":
-            return self._chosen_bit(*(trim(ports[port], 1) for port in "SBA"))
+            return self.choice(*(trim(ports[port], 1) for port in "SBA"))
         operands = [self._low_bit(ports[port]) for port in ("A", "B") if port in ports]
         if kind == "$not":
             return prefix("not", operands[0])
@@ -135,9 +135,11 @@ class Cells:
             return operands[0]
         return call("lsb", self._vector(cell, 1))
 
-    def _chosen_bit(self, select: Spec, b: Spec, a: Spec) -> Expression:
-        """Write a multiplexer of one bit; with a constant, it is an `and` or an `or`."""
+    def choice(self, select: Spec, b: Spec, a: Spec) -> Expression:
+        """Write a multiplexer; of one bit and with a constant, it is an `and` or an `or`."""
         values, s = self._values, self._values.logic(select)
+        if spec_width(a) > 1:
+            return call("mux", s, *(values.unsigned(spec, target=True) for spec in (b, a)))
         for constant, other, is_on in (
             (values.constant(a), b, True),
             (values.constant(b), a, False),
@@ -169,8 +171,7 @@ class Cells:
             a, b = (self._bitwise(ports[port], width, signed) for port in "AB")
             return infix(_BITWISE[kind], a, b)
         if kind == "$mux":
-            a, b = (values.unsigned(ports[port], width, target=True) for port in "AB")
-            return call("mux", values.logic(ports["S"]), b, a)
+            return self.choice(ports["S"], *(trim(ports[port], width) for port in "BA"))
         if kind in ("$divfloor", "$modfloor"):
             return self._division(cell, width, signed)
         if kind in ("$shl", "$shr", "$sshr", "$shift"):

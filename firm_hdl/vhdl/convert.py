@@ -1,7 +1,8 @@
 """Convert any Amaranth design to VHDL-2008.
 
 The design's hierarchy stays: one entity and architecture for each module, in a file of its own.
-Signals and instances keep their names if VHDL allows them; `Vhdl.entities` lists all names. The
+Signals and instances keep their names if VHDL allows them; `Vhdl.entities` lists all names. A copy
+of a value that nothing reads has no signal, unless it has an attribute such as ``keep``. The
 text depends on the design only: it has no paths, no dates and no source locations.
 
 A signal of one bit is `std_logic`. A signal of several bits is `unsigned`, even if it is signed in
@@ -44,7 +45,8 @@ class Vhdl:
         Texts by file name, in an order in which they compile.
     entities : mapping of str to EntityNames
         Names of ports, signals, memories and instances, by module of the netlist. A wire without
-        bits has no entry, nor has a generated wire (``$1``) that became part of an expression.
+        bits has no entry, nor has a copy that nothing reads, nor a generated wire (``$1``) that
+        became part of an expression.
     """
 
     top: str

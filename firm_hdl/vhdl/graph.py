@@ -13,13 +13,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
+from firm_hdl.names.attributes import PURPOSE, REMARK
 from firm_hdl.rtlil.fields import base_of_field
-from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec, spec_width
+from firm_hdl.rtlil.ir import Assign, Cell, Module, Process, Slice, Spec, Value, Wire, spec_width
 from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
 
 __all__ = [
     "Connection",
     "Graph",
+    "attributes_of",
     "graph_of",
     "only",
     "target_of",
@@ -27,6 +29,9 @@ __all__ = [
     "wires_of",
 ]
 
+
+_INTERNAL = ("init", "src", "generator", "top", "enum_base_type", PURPOSE, REMARK)
+"""Attributes that are for readers of RTLIL."""
 
 Connection: TypeAlias = "tuple[Spec, Spec]"
 """A target and the value that drives it."""
@@ -49,7 +54,9 @@ class Graph:
     drives : tuple of Connection
         Connections that drive a wire.
     aliases : tuple of Connection
-        Connections that only give a value another name.
+        Connections that only give a value another name, and that tools are to keep.
+    copy_of : mapping of str to str
+        By wire: the signal of the design that was no more than a copy of it.
     fields : tuple of Connection
         Aliases that are fields of a signal, which nothing needs if the signal has a name.
     name_of : mapping of str to str
@@ -70,6 +77,7 @@ class Graph:
     drives: tuple[Connection, ...] = ()
     aliases: tuple[Connection, ...] = ()
     fields: tuple[Connection, ...] = ()
+    copy_of: Mapping[str, str] = field(default_factory=dict)
     name_of: Mapping[str, str] = field(default_factory=dict)
     register_of: Mapping[str, Cell] = field(default_factory=dict)
     next_state: Mapping[str, Process] = field(default_factory=dict)
@@ -117,6 +125,15 @@ def only(spec: Spec) -> Slice | None:
     return spec[0] if len(spec) == 1 and isinstance(spec[0], Slice) else None
 
 
+def attributes_of(wire: Wire) -> dict[str, Value]:
+    """Return the attributes of a wire that are for tools, such as ``keep``."""
+    return {
+        name: value
+        for name, value in wire.attributes.items()
+        if name not in _INTERNAL and not name.startswith("enum_value_")
+    }
+
+
 def wires_of(specs: Iterable[Spec]) -> Counter[str]:
     """Count how often values contain each wire."""
     return Counter(chunk.wire for spec in specs for chunk in spec if isinstance(chunk, Slice))
@@ -134,8 +151,9 @@ def target_of(process: Process) -> str | None:
 
 _COMPARISONS = frozenset("$eq $ne $lt $le $gt $ge".split())
 
-# Largest number of operands in an expression, and of copies of a comparison.
+# Largest number of operands in an expression and in a chain of `or`, and of copies of a comparison.
 _MAX_OPERANDS = 6
+_MAX_CHAIN = 24
 _MAX_REPEATS = 3
 
 
@@ -315,6 +333,20 @@ def _adopt_names(graph: Graph) -> Graph:
     return replace(graph, drives=tuple(drives), aliases=tuple(aliases), name_of=name_of)
 
 
+def _drop_copies(graph: Graph) -> Graph:
+    """Drop the copies of values that nothing reads, but those with attributes for tools."""
+    kept: list[Connection] = []
+    copy_of: dict[str, str] = {}
+    for target, value in graph.aliases:
+        to, source = target[0], only(value)
+        assert isinstance(to, Slice)
+        if attributes_of(graph.module.wires[to.wire]):
+            kept.append((target, value))
+        elif source is not None and source.width == graph.width[source.wire] and to.bare:
+            copy_of.setdefault(source.wire, to.wire)
+    return replace(graph, aliases=tuple(kept), copy_of=copy_of)
+
+
 def _named_after_ports(graph: Graph) -> Iterator[str]:
     """Yield the inner wires with the name of the submodule's port to which they are connected."""
     for cell in graph.cells:
@@ -398,7 +430,8 @@ def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
             if port != "Y"
             for chunk in spec
         )
-        if weight <= _MAX_OPERANDS and (count[name] == 1 or _may_repeat(cell, count[name], folded)):
+        most = _MAX_CHAIN if cell.kind == "$or" else _MAX_OPERANDS
+        if weight <= most and (count[name] == 1 or _may_repeat(cell, count[name], folded)):
             leaves[name] = weight
             folded[name] = cell
     return replace(graph, folded=folded)
@@ -459,6 +492,7 @@ PASSES: tuple[Callable[[Graph], Graph], ...] = (
     _sort_connections,
     _narrow,
     _adopt_names,
+    _drop_copies,
     _pair_registers,
 )
 """The passes in order: each pass relies on those before it."""

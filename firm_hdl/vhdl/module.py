@@ -75,7 +75,7 @@ class ModuleWriter(Writer):
             for index, port in enumerate(ports):
                 mode = {"input": "in", "output": "out"}.get(port.direction, port.direction)
                 end = "" if index == len(ports) - 1 else ";"
-                remark = self.remark(port.wire)
+                remark = self.remark(port.wire, layout=True)
                 yield f"    {port.outer.name:<{size}} : {mode:<3} {port.outer.type}{end}{remark}"
             yield "  );"
         yield "end entity;"
@@ -126,7 +126,7 @@ class ModuleWriter(Writer):
             item, start = each.declared, ""
             if role == "register":
                 start = f" := {initial_value(self.module.wires[each.wire], item.width)}"
-            remark = self.remark(each.wire)
+            remark = self.remark(each.wire, layout=role == "register")
             lines.append(f"signal {item.name:<{size}} : {item.type}{start};{remark}")
         return lines
 

@@ -28,6 +28,9 @@ from firm_hdl.vhdl.text import Expression, atom, chain, infix, literal
 __all__ = ["Arm", "Statements", "flatten", "merged"]
 
 # Most choices of a conditional assignment, for readability; fewest of a `case` instead of an `if`.
+_MAX_CHOICE_LINE = 130
+"""Most characters of an `if` that is written as one assignment."""
+
 _MAX_CHOICES = 6
 _MIN_CHOICES = 3
 
@@ -144,8 +147,38 @@ class Statements:
                 yield from self.assign(statement)
             elif (plain := self._plain_cases(statement)) is not None:
                 yield from self.case(statement, plain)
+            elif line := self._choice_line(statement):
+                yield line
             else:
                 yield from self.if_(self.arms(statement))
+
+    def _choice_line(self, switch: Switch) -> str:
+        """Write an `if` with one assignment to the same signal in both arms as one assignment."""
+        bodies = [case.body for case in switch.cases]
+        patterns = [case.patterns for case in switch.cases]
+        if patterns not in ([("1",), ()], [("0",), ()], [("1",), ("0",)], [("0",), ("1",)]):
+            return ""
+        if any(len(body) != 1 or not isinstance(body[0], Assign) for body in bodies):
+            return ""
+        first, second = (body[0] for body in bodies)
+        assert isinstance(first, Assign) and isinstance(second, Assign)
+        chunk = first.target[0]
+        if first.target != second.target or len(first.target) > 1 or not isinstance(chunk, Slice):
+            return ""
+        values = (first.value, second.value)
+        if any(self.chosen(chunk, value) or self.values.folded(value) for value in values):
+            return ""
+        if all(self.values.constant(value) is not None for value in values):
+            return ""
+        b, a = values if patterns[0] == ("1",) else reversed(values)
+        line = self.choice_of(chunk, switch.selector, b, a)
+        return line if len(line) <= _MAX_CHOICE_LINE else ""
+
+    def choice_of(self, target: Slice, select: Spec, b: Spec, a: Spec) -> str:
+        """Write the assignment of one of two values."""
+        declared = self.targets[target.wire]
+        value = declared.accept(self.values.cells.choice(select, b, a), target.width)
+        return f"{declared.part(target.low, target.width)} <= {value};"
 
     def assign(self, statement: Assign) -> Iterator[str]:
         """Yield an assignment, one line for each chunk of its target."""

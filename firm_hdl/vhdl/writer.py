@@ -12,9 +12,9 @@ from typing import Any, ClassVar
 
 from firm_hdl.names.attributes import PURPOSE
 from firm_hdl.rtlil.ir import Bits, Cell, Module, Slice, Spec, Statement, Value, cut
-from firm_hdl.vhdl.declare import Role, Signal, attributes_of, declare, enumeration, remark_of
+from firm_hdl.vhdl.declare import Role, Signal, declare, enumeration, layouts, remark_of
 from firm_hdl.vhdl.expr import Declared, Values
-from firm_hdl.vhdl.graph import graph_of, only
+from firm_hdl.vhdl.graph import attributes_of, graph_of, only
 from firm_hdl.vhdl.memory import MemoryText, memory_id
 from firm_hdl.vhdl.process import Statements, flatten
 from firm_hdl.vhdl.registers import Registers
@@ -25,7 +25,7 @@ __all__ = ["TITLES", "Writer"]
 TITLES: Mapping[Role, str] = {
     "register": "Registers.",
     "logic": "Combinational signals.",
-    "alias": "Signals that no logic reads, for simulation.",
+    "alias": "Signals that no logic reads, for tools.",
 }
 """Comments above the declarations of signals."""
 
@@ -72,6 +72,9 @@ class Writer(ABC):
             child_names=port_names,
             vectors=vectors,
         )
+        self._layouts = layouts(module)
+        # By layout: the first wire beside which a comment has it.
+        self._shown: dict[str, str] = {}
         declared = self.names.declared
         self.values = self.value_writer(declared, graph.folded, graph.width)
         self.values.choice = self._choice
@@ -208,13 +211,20 @@ class Writer(ABC):
 
     def purpose(self) -> Iterator[str]:
         """Yield comments on what the module is for."""
-        text = str(self.module.attributes.get(PURPOSE, ""))
-        for line in textwrap.wrap(text if text.isascii() and text.isprintable() else "", 96):
-            yield f"{self.mark} {line}"
+        first, *lines = str(self.module.attributes.get(PURPOSE, "")).split("\n")
+        for line in [*textwrap.wrap(first, 96), *lines]:
+            if line.isascii() and line.isprintable():
+                yield f"{self.mark} {line}".rstrip()
 
-    def remark(self, wire: str) -> str:
-        """Write a comment on the sign and the enumeration of a wire; its type has neither."""
-        text = remark_of(self.owner(wire))
+    def remark(self, wire: str, *, layout: bool = False) -> str:
+        """Write a comment on what the type of a wire does not say, perhaps with its layout."""
+        own, owner = self.names.remarks.get(wire, ""), self.graph.name_of.get(wire, wire)
+        fields = (self._layouts.get(owner) or self._layouts.get(wire)) if layout else None
+        if fields:
+            again = f"bits as of {self.names.declared[self._shown.setdefault(fields, wire)].name}"
+            if self._shown[fields] != wire and len(again) < len(fields):
+                fields = again
+        text = "; ".join(filter(None, [remark_of(self.module.wires[owner]) or own, fields]))
         return f"  {self.mark} {text}" if text else ""
 
     def attributes(self, signal: Signal) -> dict[str, Value]:

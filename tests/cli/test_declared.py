@@ -22,7 +22,7 @@ DEFAULTS = {
         ["a/B"],
         {**ORIGINS, **PLAN, "types": ["a/B"], "out": "vhdl_out"}
         | {"ports": "records", "extras": frozenset(), "force": False, "jobs": None}
-        | {"datasheet": False},
+        | {"datasheet": False, "registers": False, "ip": None, "leaf_ports": None},
     ),
     "list": ([], {**ORIGINS, "only_path": False, "as_json": False}),
     "show": (["a/B"], {**ORIGINS, "type": "a/B"}),
@@ -118,13 +118,15 @@ def is_refused(*words):
 def test_other_actions_of_a_node_have_these_defaults():
     info = {"action": "info", "file": "n.yaml", "path": []}
     assert parsed("node", "info", "n.yaml") == {**info, "as_json": False, "members": False}
-    assert parsed("node", "new", "n.yaml") == {**info, "action": "new", "language": None}
+    new = {**info, "action": "new", "language": None, "ports": None}
+    assert parsed("node", "new", "n.yaml") == new
     build = {**info, "action": "build", "out": "node_out", "force": False, "datasheet": False}
     assert parsed("node", "build", "n.yaml") == {
         **build,
         "sim": False,
         "engine": "auto",
         "target": None,
+        "ip": None,
     }
     assert is_refused("node", "info", "n.yaml", "--board", "sim")
 

@@ -153,8 +153,8 @@ def test_a_node_is_built_with_its_options_and_summed_up(monkeypatch, capsys):
     monkeypatch.setattr("firm_hdl.node.read_description", lambda file, paths: (file, paths))
     monkeypatch.setattr("firm_hdl.node.summary.summary", lambda description: f"of {description}")
 
-    def build_node(description, out, *, force, stimuli, datasheet):
-        asked.append((description, out, force, datasheet))
+    def build_node(description, out, *, force, stimuli, datasheet, ip):
+        asked.append((description, out, force, datasheet, ip))
         packets.extend(stimuli(message, plan))
         return BuiltDesign(folder=Path("there"), was_current=force, kept=KEPT)
 
@@ -163,14 +163,12 @@ def test_a_node_is_built_with_its_options_and_summed_up(monkeypatch, capsys):
     monkeypatch.setattr("firm_hdl.node.build.build_node", build_node)
     assert main(["node", "build", "n.yaml"]) == 0
     assert capsys.readouterr().out == f"wrote   there\n{TOLD}of ('n.yaml', [])\n"
-    assert (
-        main(["node", "build", "n.yaml", "--path", "a", "--out", "x", "--force", "--datasheet"])
-        == 0
-    )
+    options = ["--path", "a", "--out", "x", "--force", "--datasheet", "--ip", "vivado"]
+    assert main(["node", "build", "n.yaml", *options]) == 0
     assert capsys.readouterr().out == f"current there\n{TOLD}of ('n.yaml', ['a'])\n"
     asked_first, asked_then = asked
-    assert asked_first == (("n.yaml", []), "node_out", False, False)
-    assert asked_then == (("n.yaml", ["a"]), "x", True, True)
+    assert asked_first == (("n.yaml", []), "node_out", False, False, False)
+    assert asked_then == (("n.yaml", ["a"]), "x", True, True, True)
     assert packets == stimuli(message, plan) * 2
 
 

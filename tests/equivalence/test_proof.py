@@ -188,4 +188,4 @@ def test_proved_vhdl_is_the_vhdl_that_build_writes(direction: Direction, built: 
 
 def _without_heads(text: str) -> str:
     """Return VHDL without the comments before entities, which name the modules."""
-    return re.sub(r"^-- .*\n", "", text, flags=re.MULTILINE)
+    return re.sub(r"^--(?: .*)?\n", "", text, flags=re.MULTILINE)

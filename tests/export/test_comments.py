@@ -162,9 +162,9 @@ def test_no_comment_of_any_file_begins_with_a_pragma(folder):
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         text = path.read_bytes().decode()
         assert not {*text} & {chr(code) for code in range(32)} - {"\n", "\t"}, path
-        assert text.isascii() or path.suffix == ".json", path
-        if path.suffix == ".json":
-            continue  # JSON has no comments.
+        if path.suffix in (".json", ".md"):
+            continue  # They are no input of tools of hardware.
+        assert text.isascii(), path
         tried += len(re.findall(WORDS, text))
         assert not STARTS.search(QUOTED.sub("", text)), path
     assert tried > 100

@@ -8,6 +8,7 @@ import socket
 import struct
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from tests.tools import need
@@ -17,14 +18,18 @@ __all__ = ["NODES", "build_board", "make_tap", "ping"]
 NODES = Path(__file__).parents[2] / "examples" / "nodes"
 
 
-def build_board(folder: Path, example: str, name: str = "", text: str = "") -> Path:
+def build_board(
+    folder: Path, example: str, name: str = "", text: str = "", more: Mapping[str, str] = {}
+) -> Path:
     """Build an example in a copy of its folder, or a node of the test; return its program."""
     need("Verilator", shutil.which("verilator"))
     shutil.copytree(NODES, folder / "nodes", ignore=shutil.ignore_patterns("work"))
     place = folder / "nodes" / example
     options = []
     if name:
-        (place / f"{name}.yaml").write_text(text)
+        for file, content in {f"{name}.yaml": text, **more}.items():
+            (place / file).parent.mkdir(parents=True, exist_ok=True)
+            (place / file).write_text(content)
         options = [f"FILE={name}.yaml", f"NAME={name}"]
     paths = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     made = subprocess.run(

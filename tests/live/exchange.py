@@ -9,8 +9,8 @@ from __future__ import annotations
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from itertools import groupby
 from pathlib import Path
@@ -32,19 +32,19 @@ from tests.live.peer import Peer
 _PORTS = ("7400", "7510", "7511")
 _NODE = 7510
 _OUTGOING = 4
-_BUILTIN = {
-    PUBLICATIONS_WRITER: "publications",
-    PUBLICATIONS_READER: "publications",
-    SUBSCRIPTIONS_WRITER: "subscriptions",
-    SUBSCRIPTIONS_READER: "subscriptions",
+_ENDPOINTS = {
+    PUBLICATIONS_READER,
+    PUBLICATIONS_WRITER,
+    SUBSCRIPTIONS_READER,
+    SUBSCRIPTIONS_WRITER,
 }
 _TRIP = {"type": "string", "to": "/text_in", "back": "/text_out", "count": 1, "period": 0}
 
 
-def main() -> None:
-    """Print the diagram."""
+def main(*programs: Path) -> None:
+    """Print the diagram, of a program that was built, or else of the example."""
     with tempfile.TemporaryDirectory() as name:
-        program = build_board(Path(name), "rtps")
+        program = programs[0] if programs else build_board(Path(name), "rtps")
         leave_network()
         capture = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(0x0800))
         capture.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 24)
@@ -54,7 +54,6 @@ def main() -> None:
             with Peer("kilted", "trip", topics=[_TRIP]) as peer:
                 assert peer.next(90) == {"begins": True}
                 assert peer.result(60)["numbers"] == [[0]]
-                time.sleep(0.5)
         finally:
             board.kill()
             board.wait()
@@ -110,12 +109,10 @@ def _content(data: bytes, is_addressed: bool, node: bytes) -> str:
         if one.writer == SPDP_WRITER or one.reader == SPDP_READER:
             words.append(f"{kind} participant")
             continue
-        what = _BUILTIN.get(one.writer) or _BUILTIN.get(one.reader) or "message"
-        if isinstance(one, Data):
-            what = f"{what} {one.sequence_number}"
+        what = "endpoint" if {one.writer, one.reader} & _ENDPOINTS else "message"
         words.append(f"{kind} {what}")
     return " + ".join(words)
 
 
 if __name__ == "__main__":
-    main()
+    main(*map(Path, sys.argv[1:]))

@@ -14,7 +14,8 @@ pytestmark = pytest.mark.live
 
 BOARD = "192.168.51.50"
 LINK = f"{{kind: rtps, ethernet: gmii, mac: '02:00:00:00:00:51', address: {BOARD}/24}}"
-# A second of the board is about a minute of the simulation, so that nothing here waits for one.
+# A second of the board is minutes of the simulation. So nothing here may wait for one, as samples
+# do that have to be asked for again: there are few, and small ones.
 NODE = "\n".join(
     {"clock_mhz": "clock_mhz: 25", "link": f"link: {LINK}"}.get(line.partition(":")[0], line)
     for line in test_participant.NODE.splitlines()
@@ -50,16 +51,9 @@ def test_it_is_in_the_graph():
 
 
 def test_messages_come_back_in_order():
-    options = {"count": 200, "period": 0.1, "depth": 200}
-    topics = [
-        {"type": kind, "to": f"/{name}_in", "back": f"/{name}_out", **options}
-        for kind, name in (("string", "text"), ("imu", "imu"), ("twist", "twist"), ("scan", "scan"))
-    ]
-    with Peer("kilted", "trip", topics=topics, linger=60) as peer:
-        assert peer.next(120) == {"begins": True}
-        assert peer.result(300)["numbers"] == [list(range(200))] * 4
+    test_participant.check_trips("kilted", test_participant.TOPICS[:1], 100)
 
 
 def test_it_answers_calls():
-    with Peer("kilted", "call", name="/mode", count=50) as peer:
-        assert peer.result(120)["answers"] == [[bool(n & 1), "ok"] for n in range(50)]
+    with Peer("kilted", "call", name="/mode", count=10, timeout=60) as peer:
+        assert peer.result(300)["answers"] == [[bool(n & 1), "ok"] for n in range(10)]

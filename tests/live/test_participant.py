@@ -15,7 +15,7 @@ from firm_hdl.rtps.discovery import EndpointData, ParticipantData
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER, SPDP_WRITER, SUBSCRIPTIONS_WRITER
 from firm_hdl.rtps.wire.locators import Address
-from firm_hdl.rtps.wire.submessages import Data
+from firm_hdl.rtps.wire.submessages import Data, DataFrag, NackFrag, NumberSet
 from tests.live.boards import build_board
 from tests.live.nodes import PACKAGES
 from tests.live.peer import Peer
@@ -24,11 +24,12 @@ pytestmark = pytest.mark.live
 
 RELEASES = pytest.mark.parametrize("release", ["jazzy", "kilted"])
 
+BLOCK = "firm_hdl::msg::dds_::Block_"
 NODE = f"""\
 node: mirror
 namespace: /fpga
 distro: jazzy
-paths: {PACKAGES}
+paths: [{PACKAGES}, packages]
 clock_mhz: 1
 bus_bytes: 2
 link: {{kind: rtps, address: 127.0.0.1, participant: 50}}
@@ -58,6 +59,33 @@ accelerator: firm_hdl.node.loop:Loop
 subscribe: {/text_out: {type: std_msgs/msg/String, memory_bytes: 256}}
 publish: {/text_back: {type: std_msgs/msg/String, memory_bytes: 256}}
 """
+
+LARGE = """\
+node: large
+namespace: /fpga
+distro: jazzy
+paths: [packages]
+clock_mhz: 1
+bus_bytes: 2
+link: {kind: rtps, address: 127.0.0.1, participant: 52}
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  /text_in: {type: std_msgs/msg/String, memory_bytes: 256}
+  /cloud_in: {type: sensor_msgs/msg/PointCloud2, memory_bytes: 32768}
+  /block_in: {type: firm_hdl/msg/Block, memory_bytes: 32768}
+publish:
+  /text_out: {type: std_msgs/msg/String, memory_bytes: 2048}
+  /cloud_out: {type: sensor_msgs/msg/PointCloud2, memory_bytes: 32768}
+  /block_out: {type: firm_hdl/msg/Block, memory_bytes: 32768}
+"""
+
+FILES = {"packages/firm_hdl/msg/Block.msg": "int64 number\nuint8[] data\n"}
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    """Build the node of large messages as a process."""
+    return build_board(tmp_path_factory.mktemp("large"), "rtps", "large", LARGE, FILES)
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +118,23 @@ def start(program):
         process.communicate()
 
 
-def flood(seconds, seed=1):
+def fragments(rng):
+    """Return a DATA_FRAG and a NACK_FRAG, right or wrong, of endpoints that `flood` announces."""
+    sizes = {
+        "first": rng.choice((0, 1, 1, 2, 3, 1 << 31)),
+        "count": rng.choice((0, 1, 1, 2, 0xFFFF)),
+        "fragment_bytes": rng.choice((0, 1, 16, 16, 64, 0xFFFF)),
+        "sample_bytes": rng.choice((0, 1, 40, 40, 100, 1 << 15, 1 << 31)),
+    }
+    ends = {"reader": 0, "writer": 0x303, "sequence_number": rng.randrange(1, 3)}
+    part = DataFrag(**ends, **sizes, payload=rng.randbytes(rng.choice((0, 16, 32, 40))))
+    ends = {"reader": 0x404, "writer": 0, "sequence_number": rng.randrange(4)}
+    base = rng.choice((0, 1, 2, 1 << 31))
+    missing = NumberSet.of(base, rng.sample(range(base, base + 256), 9))
+    return part, NackFrag(**ends, missing=missing, count=rng.randrange(99))
+
+
+def flood(port, seconds, seed=1):
     """Send invented participants and endpoints, damaged or not, and bytes that are no datagrams."""
     rng, end, prefixes = random.Random(seed), time.monotonic() + seconds, [bytes(12)]
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
@@ -103,21 +147,25 @@ def flood(seconds, seed=1):
                 peer = ParticipantData(prefix=prefix, discovery=nowhere, user=nowhere, lease=1e6)
                 payload, writer, number = peer.encode(), SPDP_WRITER, 1
             else:
+                topic, type_name = rng.choice(
+                    (("text", "std_msgs::msg::dds_::String_"), ("block", BLOCK))
+                )
                 endpoint = EndpointData(
                     guid=Guid(prefix, rng.choice((0x303, 0x404))),
-                    topic=rng.choice(("rt/text_in", "rt/text_out")),
-                    type_name="std_msgs::msg::dds_::String_",
+                    topic=f"rt/{topic}_{rng.choice(('in', 'out'))}",
+                    type_name=type_name,
                     qos=Qos(),
                 )
                 writer = rng.choice((PUBLICATIONS_WRITER, SUBSCRIPTIONS_WRITER))
                 payload, number = endpoint.encode(), rng.randrange(1, 4)
             sample = Data(reader=0, writer=writer, sequence_number=number, payload=payload)
-            datagram = bytearray(message.write(prefix, [sample]))
+            some = rng.choices((sample, *fragments(rng)), (3, 1, 1), k=rng.randrange(1, 4))
+            datagram = bytearray(message.write(prefix, some))
             if rng.random() < 0.3:
                 datagram[rng.randrange(len(datagram))] ^= 1 << rng.randrange(8)
             if rng.random() < 0.2:
                 del datagram[rng.randrange(1, len(datagram)) :]
-            out.sendto(datagram, ("127.0.0.1", rng.choice((7510, 7511))))
+            out.sendto(datagram, ("127.0.0.1", port + rng.choice((0, 1))))
             time.sleep(0.03)
 
 
@@ -165,6 +213,25 @@ def test_two_nodes_talk_to_each_other(start, tmp_path):
     check_trips("kilted", [{**TEXT, "back": "/text_back"}], 200)
 
 
+@RELEASES
+def test_clouds_in_fragments_come_back(release, start, large):
+    start(program=large, port=7514)
+    options = {"bytes": 20_000, "count": 10, "period": 1.5, "depth": 20, "linger": 30}
+    topic = {"type": "cloud", "to": "/cloud_in", "back": "/cloud_out", **options}
+    with Peer(release, "trip", topics=[topic]) as peer:
+        assert peer.next(90) == {"begins": True}
+        assert peer.result(300)["numbers"] == [list(range(10))]
+
+
+def test_blocks_of_cyclone_come_back_in_fragments(start, large):
+    start(program=large, port=7514)
+    options = {"type": "block", "bytes": 20_000, "count": 10, "patience": 120}
+    with Peer("cyclone", "subscribe", topic="rt/block_out", **options) as back:
+        time.sleep(5)
+        with Peer("cyclone", "publish", topic="rt/block_in", period=1.5, **options):
+            assert back.result(300)["numbers"] == list(range(10))
+
+
 def test_a_burst_waits_for_the_accelerator(start):
     start()
     # More than the memory of the topic, sent at once; the writer keeps all until they are there.
@@ -178,18 +245,9 @@ def test_the_node_is_in_the_graph_with_its_topics_and_services(release, start):
     with Peer(release, "graph", own="watcher", **wanted) as peer:
         result = peer.result()
     assert ["mirror", "/fpga"] in result["nodes"] and result["owners"] == [["mirror", "/fpga"]]
-    assert [name for name, _ in result["publishers"]] == [
-        "/imu_out",
-        "/scan_out",
-        "/text_out",
-        "/twist_out",
-    ]
-    assert [name for name, _ in result["subscriptions"]] == [
-        "/imu_in",
-        "/scan_in",
-        "/text_in",
-        "/twist_in",
-    ]
+    topics = ("imu", "scan", "text", "twist")
+    assert [name for name, _ in result["publishers"]] == [f"/{each}_out" for each in topics]
+    assert [name for name, _ in result["subscriptions"]] == [f"/{each}_in" for each in topics]
     assert [name for name, _ in result["services"]] == ["/mode"]
 
 
@@ -205,10 +263,10 @@ def test_four_clients_of_a_service_at_once(release, start):
     assert answers == [[[bool(n & 1), "ok"] for n in range(50)]] * 4
 
 
-def test_a_flood_of_invented_peers_neither_disturbs_nor_keeps_out(start):
-    start()
+def test_a_flood_of_invented_peers_neither_disturbs_nor_keeps_out(start, large):
+    start(program=large, port=7514)
     check_trips("kilted", [TEXT], 50)
-    flood(5)
+    flood(7514, 5)
     check_trips("kilted", [TEXT], 50)
 
 

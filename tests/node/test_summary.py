@@ -67,17 +67,22 @@ def test_a_memory_of_the_link_limits_what_comes():
     assert "/a over 1048576 bytes" in summary(read(large, link=few))
 
 
-def test_a_participant_has_ports_and_sends_what_fits_into_a_datagram():
+def test_a_participant_has_ports_and_sends_what_its_memory_holds():
     text = """
 node: echo
 link: {kind: rtps, address: 10.0.0.9, domain: 1, participant: 2, static_peers: [10.0.0.1]}
+subscribe:
+  /heard: {type: std_msgs/msg/String, memory_bytes: 4096, max_message_bytes: 1300}
+  /small: {type: std_msgs/msg/String, memory_bytes: 4096, max_message_bytes: 1280}
 publish:
   /said: {type: std_msgs/msg/String}
 """
     found = summary(read(text))
+    # Gates, the FIFO and the history, the link; and one topic puts samples together.
+    assert f"memory for packets: {2 * 4096 + 2 * 16384 + 16384 + 2048} bytes" in found
     assert "static_peers 10.0.0.1" in found
     assert "discovery_multicast 7650, discovery 7664, user 7665" in found
-    assert "/said over 1317 bytes" in found
+    assert "/said over 16384 bytes" in found
 
 
 def test_the_area_of_a_whole_node_is_near_that_of_its_synthesis():

@@ -29,11 +29,13 @@ SAME(skipped, TEST_MSGS_MSG_MIXED_TX_SKIPPED);
 SAME(message_double, AT(double_));
 SAME(message_b_low, AT(b));
 SAME(message_b_high, AT(b) + 4);
-SAME(message_word_4, AT(c));
-SAME(message_word_4, AT(d) - 2);
+SAME(message_word_4_2, AT(c));
+SAME(message_word_4_2, AT(d) - 2);
 SAME(message_word_5, AT(inner[0].e));
 SAME(message_word_5, AT(inner[1].e) - 2);
 SAME(message_g_low, AT(g));
+SAME(message_g_low_2, AT(g_low));
+SAME(message_word_4, AT(word_4));
 _Static_assert(TEST_MSGS_MSG_MIXED_TX_STATUS_CODE_MASK
   == TEST_MSGS_MSG_MIXED_TX__STATUS__CODE_bm, "mask");
 int main(void)
@@ -65,6 +67,8 @@ def test_peakrdl_and_a_compiler_agree_with_the_header(tmp_path):
     (folder.parent / "package.xml").write_text("<package><name>test_msgs</name></package>")
     (folder / "Inner.msg").write_text("uint8[2] e\nstring left_out\n")
     text = "uint8 double\nfloat64 b\nbool c\nint16 d\nFixed[2] inner\nint64 g\n"
+    # Names that are those of halves and words of others.
+    text += "int32 g_low\nint32 word_4\n"
     (folder / "Fixed.msg").write_text("uint8[2] e\n")
     (folder / "Mixed.msg").write_text(text + "Inner unused\nstring name\n")
     message = load_message("test_msgs/msg/Mixed", paths=[tmp_path])

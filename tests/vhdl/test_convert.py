@@ -157,7 +157,7 @@ def test_words_of_vhdl_ams_are_names_of_outermost_ports_only(tmp_path: Path) -> 
     through = Signal(8, name="Through")
     inner.d.sync += limit.eq(noise)
     top.submodules.inner = inner
-    top.d.comb += [through.eq(limit + 1), across.eq(through)]
+    top.d.comb += [through.eq(limit + 1), across.eq(through + 1)]
     vhdl = convert(top, name="top", ports=[noise, across])
     outer = vhdl.entities["top"]
     assert outer.ports["noise"] == "noise" and outer.ports["across"] == "across"

@@ -176,4 +176,4 @@ def test_a_transparent_port_passes_on_what_is_written_to_its_own_word(
 
     text = convert(Fixed(), name="fixed").files["fixed.vhd"]
     assert f"memory({to}) <= unsigned(given);" in text
-    assert ("seen_q <= unsigned(given);" in text) is bypasses
+    assert ("read_data <= unsigned(given);" in text) is bypasses

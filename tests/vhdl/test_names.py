@@ -93,14 +93,40 @@ def test_names_of_the_design_come_before_names_made_for_operators() -> None:
 
 def test_only_what_nothing_else_reads_is_the_next_value_of_a_register() -> None:
     m = Module()
-    ports = [Signal(8, name=name) for name in ("x", "y", "z", "a", "b", "c")]
-    x, y, z, a, b, c = ports
-    shared, own = (x * y)[:4], (x * z)[:4]
-    m.d.sync += [a.eq(Cat(shared, y)), b.eq(Cat(shared, z)), c.eq(Cat(own, z))]
+    ports = [Signal(8, name=name) for name in ("x", "y", "z", "a", "b", "c", "d")]
+    x, y, z, a, b, c, d = ports
+    shared, own, other = (x * y)[:4], (x * z)[:4], (y * z)[:4]
+    m.d.comb += d.eq(other + x)
+    m.d.sync += [
+        x.eq(Cat(other, other)),
+        a.eq(Cat(shared, y)),
+        b.eq(Cat(shared, z)),
+        c.eq(Cat(own, z)),
+    ]
     with m.If(y[0]):
         m.d.sync += c.eq(Cat(own, y))
     text = convert(m, name="t", ports=ports).files["t.vhd"]
-    assert "c_next_0" in text and "a_next" not in text and "b_next" not in text
+    assert "signal c_next_0 : unsigned(3 downto 0);\n" in text
+    assert "signal a_next_0 : unsigned(3 downto 0);  -- also b_next_0\n" in text
+    assert "x_next" not in text
+
+
+def test_a_large_part_of_one_result_is_named_after_it() -> None:
+    m = Module()
+    a, b, c, o, p = ports = [Signal(8, name=name) for name in "abcop"]
+    product, test = (a * b)[:8], (a[:4].all() & a[5:].any()) | a[4]
+    m.d.comb += [o.eq(Mux(c[0], product[1:7], product[2:])), p.eq(Mux(test, Cat(test, b), c))]
+    text = convert(m, name="t", ports=ports).files["t.vhd"]
+    assert "signal o_part " in text and "signal a_7_0_test : std_logic" in text
+
+
+def test_a_copy_that_nothing_reads_needs_no_signal_unless_tools_are_to_keep_it() -> None:
+    m, (a, o) = Module(), (Signal(4, name="a"), Signal(4, name="o"))
+    plain = Signal(4, name="plain")
+    probe = Signal(4, name="probe", attrs={"keep": 1})
+    m.d.comb += [o.eq(a + 1), plain.eq(a), probe.eq(a)]
+    text = convert(m, name="t", ports=[a, o]).files["t.vhd"]
+    assert "probe <= unsigned(a);" in text and "plain" not in text
 
 
 def test_ports_that_are_parts_of_a_structure_have_the_names_of_its_fields() -> None:
@@ -111,6 +137,16 @@ def test_ports_that_are_parts_of_a_structure_have_the_names_of_its_fields() -> N
     top.submodules.inner = inner
     top.d.comb += pair.eq(Cat(a ^ b, a & b))
     assert "pair_low" in convert(top, name="t", ports=ports).files["t_inner.vhd"]
+
+
+def test_a_comment_says_where_the_fields_of_a_structure_are() -> None:
+    shape = data.StructLayout({"first": 3, "last": 1, "rest": data.ArrayLayout(2, 4)})
+    m, i, o = Module(), Signal(shape, name="i"), Signal(shape, name="o")
+    m.d.sync += o.eq(i)
+    text = convert(m, name="t", ports=[i.as_value(), o.as_value()]).files["t.vhd"]
+    assert text.count("-- bits: first(2:0) last(3) rest(11:4)\n") == 1
+    # The other port, and the register.
+    assert text.count("  -- bits as of i\n") == 2
 
 
 def test_a_disjunction_of_a_few_bits_is_named_after_them() -> None:

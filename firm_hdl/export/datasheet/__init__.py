@@ -17,18 +17,17 @@ from firm_hdl.export.datasheet.layout import layout_figure
 from firm_hdl.export.datasheet.rows import clipped
 from firm_hdl.export.datasheet.steps import plan_figure
 from firm_hdl.export.datasheet.waves import waves_of
+from firm_hdl.export.facts import contract, definitions_of, lengths, port_groups, statuses
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.gateware.members import member_tree
 from firm_hdl.identity import md5sum, type_hash
 from firm_hdl.metrics import metrics_of
-from firm_hdl.model import Message, closure
-from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Constant, Loop, Plan, Run, to_yaml
-from firm_hdl.plan.tree import walk
+from firm_hdl.model import Message
+from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, to_yaml
 from firm_hdl.wire import lay_out
 
 __all__ = [
     "DATASHEET",
-    "definitions_of",
     "how_text",
     "render",
     "size_text",
@@ -42,16 +41,6 @@ _FOLDER = Path(__file__).parent
 
 _MOST_CHARACTERS = 300
 """Characters of a comment beside its ports; the definition has all."""
-
-_STATUSES = {
-    "OK": ("both", "The packet is a message; the message was written."),
-    "TRUNCATED": ("deserializer", "The packet ends before the message does."),
-    "TRAILING": ("deserializer", "Bytes follow the message."),
-    "LENGTH": ("both", "A length is over its limit; see Limits."),
-    "ENCAPSULATION": ("deserializer", "The packet starts with other bytes than 00 01."),
-    "STRING": ("deserializer", "The last byte of a string is not NUL."),
-    "ITEMS": ("serializer", "last is set in another transfer than the length implies."),
-}
 
 
 def write(
@@ -121,8 +110,9 @@ def write(
             )
             for way, each in manifest["estimates"].items()
         ],
-        statuses=list(_statuses(plan, manifest["status"])),
-        lengths=list(_lengths(plan)),
+        statuses=list(statuses(plan, manifest["status"])),
+        contract=list(contract(plan, timing["recovery"])),
+        lengths=list(lengths(plan)),
         commands=list(_commands(converters)),
     )
     return Output(files={DATASHEET: page})
@@ -133,13 +123,6 @@ def render(template: str, *folders: Path, **values: Any) -> str:
     found = pages(*folders, _FOLDER)
     found.globals["own_style"] = _FOLDER.joinpath("sheet.css").read_text(encoding="utf-8")
     return found.get_template(template).render(values).strip() + "\n"
-
-
-def definitions_of(messages: list[Message]) -> list[tuple[str, str]]:
-    """Return names and texts of messages, and of all types in them."""
-    names = {message.name for message in messages}
-    others = (each for each in closure(messages) if each.package and each.name not in names)
-    return [(each.name, each.text) for each in [*messages, *sorted(others, key=str)]]
 
 
 def sums_of(message: Message) -> Iterator[tuple[str, str]]:
@@ -163,24 +146,10 @@ def how_text(estimate: Mapping[str, Any]) -> str:
 
 
 def _port_groups(manifest: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the ports of both converters, those of a leaf together."""
-    found: dict[str, dict[str, Any]] = {}
-    for way in DIRECTIONS:
-        for port in manifest["converters"][way]["ports"]:
-            entry = found.setdefault(port["name"], {**port, **dict.fromkeys(DIRECTIONS, "")})
-            entry[way] = port["direction"]
-    groups: dict[str, list[dict[str, Any]]] = {}
-    for port in sorted(found.values(), key=_place):
-        groups.setdefault(port.get("leaf", port["name"]), []).append(port)
     comments = {leaf["path"]: leaf.get("comment", "") for leaf in manifest["leaves"]}
-    for name, ports in groups.items():
+    for name, ports in port_groups(manifest):
         comment = clipped(comments.get(name, ""), _MOST_CHARACTERS)
         yield {"meaning": ports[0]["meaning"], "comment": comment, "ports": ports}
-
-
-def _place(port: Mapping[str, Any]) -> int:
-    """Return the order of ports: clock, reset and packets; leaves; status."""
-    return 1 if "leaf" in port else 2 * port["name"].startswith("m_axis_status")
 
 
 def _amaranth(message: Message, plan: Plan, way: Direction, distro: str) -> str:
@@ -242,30 +211,6 @@ def _latencies(timing: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     )
     yield "Ready again after a damaged packet, at most", f"{recovery['most_cycles']:,}"
     yield "Longest legal packet", f"{recovery['longest_packet_cycles']:,}"
-
-
-def _statuses(plan: Plan, codes: Mapping[str, int]) -> Iterator[tuple[str, ...]]:
-    has = {
-        "LENGTH": bool(plan.lengths),
-        "ENCAPSULATION": plan.header_bytes > 0,
-        "STRING": any(length.nul for length in plan.lengths.values()),
-        "ITEMS": any(leaf.kind == "items" for leaf in plan.leaves),
-    }
-    for name, code in codes.items():
-        if has.get(name, True):
-            converter, meaning = _STATUSES[name]
-            if name == "TRAILING" and plan.wire == "cdr":
-                meaning = "More than three bytes follow the message."
-            yield str(code), name, converter, meaning
-
-
-def _lengths(plan: Plan) -> Iterator[tuple[str, ...]]:
-    """Yield the limit of each length."""
-    for item in walk(plan.items):
-        if isinstance(item, Run | Loop) and not isinstance(item.count, Constant):
-            what = "elements" if isinstance(item, Loop) else plan.leaves[item.leaf].type
-            text = f"{what}, and a NUL" if item.count.nul else what
-            yield str(plan.leaves[item.count.leaf]), text, f"{item.count.limit:,}"
 
 
 def _options(converters: Converters) -> str:

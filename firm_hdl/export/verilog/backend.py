@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict
 from typing import Any
 
+from firm_hdl.export.axis_leaves import AxisPort, axis_module, axis_ports
 from firm_hdl.export.backend import Converters, Output, module_name
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
 from firm_hdl.export.verilog.template import instance, template
 from firm_hdl.plan import Plan
 from firm_hdl.verilog import convert
 
-__all__ = ["waivers", "write"]
+__all__ = ["converter_axis_ports", "waivers", "write"]
 
 _WAIVERS = "waivers.vlt"
 """File with waivers of Verilator's warnings."""
@@ -27,7 +29,8 @@ _WAIVED = {
 def write(converters: Converters) -> Output:
     """Write Verilog-2005 that is also SystemVerilog, and the manifest's entry `converters`."""
     name, plan = converters.name, converters.plan
-    files, section, instances = {}, {}, {}
+    files, instances = {}, {}
+    section: dict[str, dict[str, Any]] = {}
     for direction in DIRECTIONS:
         module = module_name(name, direction)
         header = converters.header(module, f"the {direction}")
@@ -43,15 +46,34 @@ def write(converters: Converters) -> Output:
             "reset": "aresetn",
             "ports": _ports(plan, direction),
         }
+        if converters.options.leaf_ports == "axis":
+            axis, ports = (
+                module_name(name, direction, "axis"),
+                converter_axis_ports(plan, direction),
+            )
+            what = converters.header(axis, f"the {direction} with leaves as AXI4-Stream")
+            files[f"{axis}.v"] = axis_module(axis, module, ports, what)
+            section[direction]["axis"] = {
+                "module": axis,
+                "verilog": [f"{module}.v", f"{axis}.v"],
+                "ports": [asdict(port) for port in ports],
+            }
         instances[direction] = instance(converters.message, plan, direction, module=module)
         if "tools" in converters.options.extras:
             section[direction]["template"] = f"{module}.veo"
             files[f"{module}.veo"] = template(direction, instances[direction], header=header)
     if "tools" in converters.options.extras:
-        modules = [module_name(name, each) for each in DIRECTIONS]
-        registers = [module_name(name, each, "registers") for each in converters.registers]
-        files[_WAIVERS] = waivers([*modules, *registers])
+        parts = [(), *([("axis",)] if converters.options.leaf_ports == "axis" else [])]
+        modules = [module_name(name, each, *part) for part in parts for each in DIRECTIONS]
+        modules += [module_name(name, each, "registers") for each in converters.registers]
+        files[_WAIVERS] = waivers(modules)
     return Output(files=files, manifest={"converters": section}, instances=instances)
+
+
+def converter_axis_ports(plan: Plan, direction: Direction) -> list[AxisPort]:
+    """List the ports of a converter whose leaves are AXI4-Stream."""
+    ports = ports_of(plan, direction)
+    return axis_ports(ports, {port.name: port.member for port in ports if port.leaf is not None})
 
 
 def waivers(modules: Iterable[str]) -> str:

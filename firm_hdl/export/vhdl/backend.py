@@ -64,6 +64,12 @@ def write(converters: Converters) -> Output:
     )
 
 
+def _about(converters: Converters, way: Direction) -> str:
+    """Write what a core's file begins with."""
+    inner = "inside, and 8 at its ports, as the constants of firm_hdl_types_pkg"
+    return f"{converters.steps(way)}A status has 3 bits {inner}.\n"
+
+
 def _lists(section: Mapping[str, Any]) -> dict[str, str]:
     """List the files to synthesize, and those of the benches, which compile after the design."""
     lists = {"files.txt": section["files"], "bench_files.txt": section["bench"]["files"]}
@@ -117,7 +123,9 @@ def to_vhdl(converters: Converters) -> Output:
     name, plan = converters.name, converters.plan
     parts = _Parts(base=identifier(name).lower(), header=converters.header(name, "converters"))
     cores = {
-        way: parts.core(converters.circuits[way], f"{parts.base}_{way}_flat", converters.steps(way))
+        way: parts.core(
+            converters.circuits[way], f"{parts.base}_{way}_flat", _about(converters, way)
+        )
         for way in DIRECTIONS
     }
     for way, circuit in converters.register_circuits.items():

@@ -6,7 +6,8 @@ from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.gateware.positions import any_of, pick
+from firm_hdl.gateware.positions import any_of, named, pick
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Budget"]
@@ -14,6 +15,10 @@ __all__ = ["Budget"]
 
 class Budget(wiring.Component):
     """Charge lengths to a budget of bytes. A length can come in each cycle.
+
+    Lengths inside each other could claim far more bytes than a packet may have, each of them legal
+    by itself; a deserializer would then write zeros for hours. So all that are inside one outermost
+    length share a budget, which is renewed with that length.
 
     The check is a pipeline beside the sequencer, so that it is not in the loop that limits the
     clock rate::
@@ -108,7 +113,12 @@ class Budget(wiring.Component):
         )
 
         # Cycle 3.
-        remaining = Signal(width - 1, name="remaining", reset_less=True)
+        remaining = Signal(
+            width - 1,
+            name="remaining",
+            reset_less=True,
+            attrs={REMARK: f"what is left of a budget of {total} bytes"},
+        )
         left, exceeds = Signal(width, name="left"), Signal(name="exceeds")
         m.d.comb += [
             left.eq(Mux(renewed, total, remaining) + less - more),
@@ -135,10 +145,11 @@ class Budget(wiring.Component):
         """Return a register with the sum of one term of each place, less a constant."""
         if not places:
             return Const(0, 1)
-        target = Signal(width, name=name, reset_less=True)
+        remark = f"bytes claimed, less {less} that padding may save" if less else "bytes claimed"
+        target = Signal(width, name=name, reset_less=True, attrs={REMARK: remark})
         total: Value = Const(0, width)
-        for terms in places:
-            total = pick(terms, width) + total
+        for place, terms in enumerate(places):
+            total = named(m, f"{name}_at_{place}", pick(terms, width)) + total
         m.d.sync += target.eq(total - less)
         return target
 

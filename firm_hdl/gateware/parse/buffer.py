@@ -7,7 +7,7 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware.memories import LutMemory
-from firm_hdl.gateware.positions import Ring, beat_layout
+from firm_hdl.gateware.positions import Ring, beat_layout, named
 from firm_hdl.gateware.signatures import PacketSignature
 from firm_hdl.names.attributes import REMARK
 from firm_hdl.plan import Plan
@@ -168,7 +168,7 @@ class Buffer(wiring.Component):
         m.d.comb += first.eq(Mux(has_second, Value.cast(second), Value.cast(newest)))
         more, follows = Signal(name="more"), Signal(name="follows")
         m.d.comb += [more.eq(stored | ends_now), follows.eq(arrival.ended & ends_now)]
-        with m.If(arrival.next | ~arrival.ended):
+        with m.If(named(m, "takes_first", arrival.next | ~arrival.ended)):
             m.d.sync += [
                 arrival.limit.eq(first.limit),
                 arrival.following.eq(first.following),

@@ -23,6 +23,7 @@ from firm_hdl.gateware.positions import (
     any_of,
     beat_layout,
     constant_low_lane_bits,
+    named,
     pick,
 )
 from firm_hdl.names.attributes import REMARK
@@ -87,10 +88,13 @@ class Lengths(wiring.Component):
         #
         #   history | a b c | beat 0 1 2 3 4 5 6 7      lane 1: b c 0 1, lane 7: 4 5 6 7
         #
-        history = Signal(8 * (LENGTH_BYTES - 1), reset_less=True)
+        history: Value = Const(0, 8 * (LENGTH_BYTES - 1))
+        if any(lane < LENGTH_BYTES - 1 for lane in lanes):
+            history = Signal(len(history), name="history", reset_less=True)
         stream = Cat(history, self.beat.data)
-        with m.If(self.beat.valid):
-            m.d.sync += history.eq(stream[-len(history) :])
+        if isinstance(history, Signal):
+            with m.If(self.beat.valid):
+                m.d.sync += history.eq(stream[-len(history) :])
         entries, counts = [], []
         key = ring.position("key_before")
         m.d.sync += key.eq(self.key)
@@ -151,7 +155,7 @@ class Lengths(wiring.Component):
         """Decode all columns of an entry, as if a length ended in a lane of the beat."""
         # Every lane is decoded in every beat, whether or not a length ends there: an entry that is
         # no length is never looked up. So no decision about the packet comes before the write.
-        zero = ~length.any()
+        zero = ~named(m, f"length_{lane}_not_0", length.any())
         columns: dict[str, Value] = {"zero": zero}
         for each in self.program.lengths.values():
             over = exceeds(length, each.max_count)
@@ -268,6 +272,14 @@ def length_of_step(
     m.d.comb += [Value.cast(table.beat).eq(beat), table.key.eq(last_at)]
     entry = table.entry
 
+    def chosen(column: str, states: list[Value]) -> Value:
+        """Return, by name, whether the length of the state has a column."""
+        return (
+            states[0]
+            if len(states) == 1
+            else named(m, f"has_{column.removeprefix('over_')}", any_of(states))
+        )
+
     def select(
         column: Callable[[Length], str | None], width: int = 1, *, exact: bool = False
     ) -> Value:
@@ -277,7 +289,7 @@ def length_of_step(
             name = column(length)
             if name is not None:
                 states.setdefault(name, []).append(flow.step[number])
-        cases = [(any_of(on), Value.cast(entry[name])) for name, on in states.items()]
+        cases = [(chosen(name, on), Value.cast(entry[name])) for name, on in states.items()]
         return cases[0][1] if len(cases) == 1 and not exact else pick(cases, width)
 
     over = select(lambda each: each.over)
@@ -290,6 +302,5 @@ def length_of_step(
         "two_passes": select(lambda each: each.two_passes),
         "rest": select(lambda each: each.rest if each.level is None else None, program.rest_bits),
     }
-    named = {name: Signal(len(value), name=f"length_{name}") for name, value in values.items()}
-    m.d.comb += [named[name].eq(value) for name, value in values.items()]
-    return StepLength(entry=entry, count=table.count, zero=entry.zero, **named)
+    selected = {name: named(m, f"length_{name}", value) for name, value in values.items()}
+    return StepLength(entry=entry, count=table.count, zero=entry.zero, **selected)

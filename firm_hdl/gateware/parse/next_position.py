@@ -10,7 +10,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 
 from firm_hdl.gateware.flow import Flow
 from firm_hdl.gateware.parse.lengths import StepLength
-from firm_hdl.gateware.positions import Ring, any_of, pick
+from firm_hdl.gateware.positions import Ring, any_of, named, pick
 from firm_hdl.program import (
     DeserializerProgram,
     DeserializerState,
@@ -21,6 +21,14 @@ from firm_hdl.program import (
 )
 
 __all__ = ["NextPositions", "next_positions"]
+
+
+_REMARKS = {
+    "add": "bytes from last_at to the last byte of the step after it",
+    "mask": "low bits of that position that are cleared, for alignment",
+    "low": "low bits that are set then",
+    "over_rest": "over_rest is added instead: the rest of a run is in between",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,7 +93,7 @@ def next_positions(
             # On a narrow bus, positions are short: their constants are not worth registers.
             if bus < 8:
                 return flow.select(bits, value)
-            return flow.register(f"{name}_{what}", bits, value)
+            return flow.register(f"{name}_{what}", bits, value, remark=_REMARKS[what])
 
         low_bits = 3 if bus >= 8 else ring.bits
         return _Way(
@@ -117,8 +125,13 @@ def next_positions(
                 flow.register(f"again_{level}", 1, repeats) if bus >= 8 else flow.select(1, repeats)
             )
             taken = at_end & ~flow.levels[level].last
-            exits.append(way(f"again_{level}", free & taken, again))
+            if not isinstance(free, Const):
+                taken = taken & free
+            taken = named(m, f"repeats_{level}", taken)
+            exits.append(way(f"again_{level}", taken, again))
             free = free & ~taken
+    if not isinstance(free, Const):
+        free = named(m, "leaves_all_loops", free)
     exits.append(way("exit", free, attrgetter("exit")))
     bodies = [way("body", Const(1, 1), attrgetter("body_start"))]
     over_rest, after_rest = _over_rests(m, program, flow, length, begins_run)
@@ -135,7 +148,10 @@ def next_positions(
             mask.eq(chosen("mask", 3)),
             low.eq(chosen("low", len(low))),
         ]
-        result = ring.position(f"{kind}_last_at")
+        result = ring.position(
+            f"{kind}_last_at",
+            remark="((last_at + add) and not mask) or low: from 21, +6, mask 3, low 3 lead to 27",
+        )
         if isinstance(phase, int):
             m.d.comb += result.eq((total & ~Cat(mask, Const(0, len(total) - 3))) | low)
             return result
@@ -181,11 +197,15 @@ def _over_rests(
         shift = counted.item_bytes.bit_length() - 1
         rests.append((taken, Value.cast(entry[counted.rest]) << shift))
         columns.setdefault(counted.next_last_at(to), []).append(taken)
-    total = pick(sizes, len(over_rest)) + pick(rests, len(over_rest))
+    total = named(m, "begun_size", pick(sizes, len(over_rest))) + named(
+        m, "begun_rest", pick(rests, len(over_rest))
+    )
     with m.If(begins_run):
         m.d.sync += over_rest.eq(total)
     cases = [(any_of(on), Value.cast(entry[name])) for name, on in columns.items()]
-    return over_rest, cases[0][1] if len(cases) == 1 else pick(cases, Ring(plan).bits)
+    if len(cases) == 1:
+        return over_rest, cases[0][1]
+    return over_rest, named(m, "last_at_after_items", pick(cases, Ring(plan).bits))
 
 
 def _exits_of_runs(

@@ -10,7 +10,7 @@ from firm_hdl.gateware.parse.budget import Budget
 from firm_hdl.gateware.parse.buffer import ArrivalSignature
 from firm_hdl.gateware.parse.orders import order_layout
 from firm_hdl.gateware.parse.walk import Findings, Walk
-from firm_hdl.gateware.positions import Ring, sum_of_three
+from firm_hdl.gateware.positions import Ring, named, sum_of_three
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.program import DeserializerProgram
 
@@ -173,13 +173,23 @@ class Sequencer(wiring.Component):
             lambda s: s.map_offset,
             remark="signed: first byte of the map's last word, relative to last_at",
         )
-        two_word_map = flow.register("two_word_map", 1, lambda s: s.two_word_map)
-        is_counted = flow.register("is_counted", 1, lambda s: s.is_counted)
+        two_word_map = flow.register(
+            "two_word_map", 1, lambda s: s.two_word_map, remark="the map has two bus words"
+        )
+        is_counted = flow.register(
+            "is_counted",
+            1,
+            lambda s: s.is_counted,
+            remark="the step is a word that a length counts",
+        )
         offset = map_offset.as_signed()
 
         # First bytes of the two words.
         items_at, map_at = ring.position("items_at"), ring.position("map_at")
-        first_word: Value = Cat(ring.lane(map_at), ring.beat(map_at) - two_word_map)
+        first_beat = named(
+            m, "first_beat_of_map", (ring.beat(map_at) - two_word_map)[: ring.beat_bits]
+        )
+        first_word: Value = Cat(ring.lane(map_at), first_beat)
         # A choice whose condition is a constant would hide the concatenation from the Verilog back
         # end, which gives such vectors a net of their own.
         if not isinstance(walk.takes_rest, Const):
@@ -189,16 +199,23 @@ class Sequencer(wiring.Component):
         # After an error: good bytes of the two words, from the cycle after `new_error` on.
         items_room = Signal(range(bus + 1))
         map_room = Signal(range(bus + 1))
-        map_left = ring.position("map_left")
-        # limit - map_at, as one sum from registers.
-        m.d.comb += map_left.eq(sum_of_three(limit, ~walk.last_at, (1 - offset)))
+        map_left = ring.position("map_left", remark="signed: limit - map_at")
+        # limit - map_at = limit + not_last_at + 1 - map_offset, as one sum from registers.
+        to_first = named(m, "one_less_map_offset", 1 - offset, "1 - map_offset, signed")
+        m.d.comb += map_left.eq(
+            sum_of_three(m, "map_left", limit, walk.not_last_at, to_first.as_signed())
+        )
         # If the map has two words, the word of items is the first one. A negative `map_left` is at
         # least -bus: the packet ends within the first word.
         in_front = Mux(ring.beat(map_left).all(), ring.lane(map_left), 0)
         of_map = Signal(range(bus + 1), name="map_room_if_cut")
         m.d.comb += of_map.eq(self._room(map_left))
-        of_items = Mux(walk.takes_rest, self._room(limit - walk.first_at), of_map)
+        items_left = named(m, "items_left", (limit - walk.first_at)[: ring.bits])
+        of_rest = named(m, "rest_room_if_cut", self._room(items_left))
+        of_items = Mux(walk.takes_rest, of_rest, of_map)
         of_items = Mux(two_word_map, Mux(map_left[-1], in_front, bus), of_items)
+        of_items = named(m, "items_room_if_cut", of_items)
+        bad_drained = named(m, "bad_drained", bad & drained)
         with m.If(bad & new_error):
             # The bytes that trail, and those of a string before its NUL, are good.
             trails, is_string = code == Status.TRAILING, code == Status.STRING
@@ -208,7 +225,7 @@ class Sequencer(wiring.Component):
             ]
             with m.If(code == Status.TRUNCATED):
                 m.d.sync += [items_room.eq(of_items), map_room.eq(of_map)]
-        with m.Elif(bad & drained):
+        with m.Elif(bad_drained):
             m.d.sync += [items_room.eq(0), map_room.eq(0)]
 
         wanted = Signal(range(bus + 1), name="items_wanted")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
@@ -11,7 +12,8 @@ from firm_hdl.gateware.flow import Flow, exceeds
 from firm_hdl.gateware.parse.byte_flags import ByteFlags
 from firm_hdl.gateware.parse.lengths import length_of_step
 from firm_hdl.gateware.parse.next_position import next_positions
-from firm_hdl.gateware.positions import Ring, align_up, any_of
+from firm_hdl.gateware.positions import Ring, align_up, any_of, named
+from firm_hdl.names.attributes import REMARK
 from firm_hdl.program import DeserializerProgram
 
 __all__ = ["Findings", "Walk"]
@@ -99,6 +101,8 @@ class Walk:
         of the state are those of the state after it.
     step_end : Signal(position)
         First byte after the state's map or word.
+    not_last_at : Signal(position)
+        `-1 - last_at`.
     left : Signal(position)
         Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
     present : Signal(1)
@@ -119,18 +123,31 @@ class Walk:
         # After a length that claims too much, its state begins nothing: `advance` writes the flag.
         self.may_revisit = program.has_leaves and plan.has_claims
         self.begins_nothing = flow.register(
-            "begins_nothing", 1, lambda s: s.begins_nothing, written=self.may_revisit
+            "begins_nothing",
+            1,
+            lambda s: s.begins_nothing,
+            written=self.may_revisit,
+            remark="the step begins neither a run nor a loop",
         )
-        self.begins_run = flow.register("begins_run", 1, lambda s: s.begins_run)
-        self.begins_loop = flow.register("begins_loop", 1, lambda s: s.begins_loop)
-        self.is_words = flow.register("is_words", 1, lambda s: s.is_words)
-        self.takes_rest = flow.register("takes_rest", 1, lambda s: s.takes_rest)
-        self.at_end = flow.register("at_end", 1, lambda s: s.at_end)
+        self.begins_run, self.begins_loop, self.is_words, self.takes_rest, self.at_end = (
+            flow.register(name, 1, attrgetter(name), remark=remark)
+            for name, remark in (
+                ("begins_run", "the step ends with a length that counts items"),
+                ("begins_loop", "the step ends with a length that counts elements"),
+                ("is_words", "the step is a bus word of a run, and is repeated"),
+                ("takes_rest", "the step begins with the rest of the run before it"),
+                ("at_end", "the message is over, but not the packet"),
+            )
+        )
 
         start = program.states[program.start.to or 0].last_offset
-        self.last_at = ring.position("last_at", init=start % (1 << ring.bits))
-        self.first_at = ring.position("first_at")
-        self.rest = Signal(program.rest_bits, name="rest")
+        self.last_at = ring.position(
+            "last_at", init=start % (1 << ring.bits), remark="last byte of the step's map or word"
+        )
+        self.first_at = ring.position("first_at", remark="first byte after the step before")
+        self.rest = Signal(
+            program.rest_bits, name="rest", attrs={REMARK: "items in the rest of the run"}
+        )
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
         self.revisits: Value = Signal(name="revisits") if self.may_revisit else Const(0, 1)
         self.phase: Value | int = plan.header_bytes
@@ -141,6 +158,7 @@ class Walk:
 
         # The length is looked up at a register, so the read of the table starts with the cycle.
         self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
+        self.not_last_at = named(m, "not_last_at", ~self.last_at, "-1 - last_at")
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present = Signal(name="present")
         self.exits_always, self.done = Signal(name="exits_always"), Signal(name="done")
@@ -151,7 +169,7 @@ class Walk:
         m.d.comb += [
             self.step_end.eq(self.last_at + 1),
             # limit - last_at - 1.
-            self.left.eq(arrival.limit + ~self.last_at),
+            self.left.eq(arrival.limit + self.not_last_at),
             self.present.eq(~self.left[-1]),
             self.exits_always.eq(self.begins_nothing | (self.is_words & flow.words.last)),
             self.done.eq(
@@ -206,7 +224,7 @@ class Walk:
         return Findings(
             header=header,
             # The string's last byte is in the buffer, even if later bytes of the state are not.
-            nul=wrong_nul & (self.present | (~within[-1] & within.any())),
+            nul=named(m, "nul_error", wrong_nul & (self.present | (~within[-1] & within.any()))),
             cut=cut,
             trailing=trailing,
             over=(self.begins_run | self.begins_loop) & self.length.over,
@@ -252,7 +270,7 @@ class Walk:
     def _take_rest(self, issue: Value) -> None:
         """Store the rest of a run that begins; clear it after the state that takes it."""
         m, length = self.m, self.length
-        good = ~self.bad & ~length.over
+        good = named(m, "length_accepted", ~self.bad & ~length.over)
         is_string = self.flow.on(lambda state: state.begins_string)
         with m.If(issue):
             with m.If(self.ends_packet):
@@ -276,7 +294,13 @@ class Walk:
         )
         # Decisions by a length are late in the cycle, so what they select from comes first.
         early, last = ring.position("early_last_at"), ring.position("next_last_at")
-        begin = start + program.states[program.start.to or 0].last_offset
+        offset = program.states[program.start.to or 0].last_offset
+        begin = named(
+            m,
+            "last_at_of_next_packet",
+            (start + offset)[: ring.bits],
+            f"its first step ends {offset} bytes after its first byte",
+        )
         exit_or_body = Mux(self.exits_always, nexts.exit, nexts.body)
         exit_or_skipped = Mux(length.loop_skips, nexts.exit, early)
         m.d.comb += [
@@ -293,7 +317,8 @@ class Walk:
             items_at = Mux(chosen & ~length.zero, aligned, items_at)
         # After an error, `first_at` only frees beats. It must not pass the packet's end; so it
         # stays until the end state, which drops the rest of the packet as it arrives.
-        kept = Mux(self.at_end, arrival.limit, self.first_at)
+        kept = named(m, "first_at_if_bad", Mux(self.at_end, arrival.limit, self.first_at))
+        items_at = named(m, "first_at_if_good", items_at)
         with m.If(issue | (bad & self.at_end)):
             m.d.sync += self.first_at.eq(Mux(self.ends_packet, start, Mux(bad, kept, items_at)))
         with m.If(issue):

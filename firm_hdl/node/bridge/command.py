@@ -170,7 +170,7 @@ class Status:
         self._replaces = stream.isatty()
         self._width = 0
         self._before: tuple[float, int, int] | None = None
-        self._next = 0.0 if self._replaces else time.monotonic() + _LOG_SECONDS
+        self._next: float | None = None
 
     def report(self, text: str) -> None:
         """Print a line that stays."""
@@ -181,6 +181,9 @@ class Status:
         # The start is over, and this line is in place of that of the command.
         stage("")
         now = time.monotonic()
+        if self._next is None:
+            # Only now: a board that is compiled takes longer to start than a line is apart.
+            self._next = now if self._replaces else now + _LOG_SECONDS
         if self._quiet or now < self._next:
             return
         self._next = now + (0.0 if self._replaces else _LOG_SECONDS)

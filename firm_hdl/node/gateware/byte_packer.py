@@ -88,7 +88,7 @@ class BytePacker(wiring.Component):
         )
         m.d.comb += [
             Value.cast(piece.i.payload.data).eq(came.data >> Cat(Const(0, 3), start)),
-            piece.i.payload.count.eq(count_of_keep((came.keep >> start)[:bus], Const(1))),
+            piece.i.payload.count.eq(count_of_keep(m, (came.keep >> start)[:bus], Const(1))),
             piece.i.payload.last.eq(came.last),
             piece.i.valid.eq(self.i.valid & ~stops),
             self.i.ready.eq(piece.i.ready & ~stops),

@@ -8,13 +8,14 @@ from typing import Any
 from amaranth.hdl import ClockDomain, DomainRenamer, Module, ResetSignal, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.cdc import PulseSynchronizer, ResetSynchronizer
-from amaranth.lib.fifo import AsyncFIFOBuffered
+from amaranth.lib.fifo import AsyncFIFO
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.datagrams import datagram_layout
 from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
 from firm_hdl.ethernet.phy import PHYS, GmiiSignature, MiiSignature, RgmiiSignature
 from firm_hdl.gateware.packets.counters import add_counters
+from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.node.control import ethernet_counter
 from firm_hdl.node.description import Description, Link
 from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
@@ -33,8 +34,8 @@ _GIGABIT_HZ = 125e6
 _APART = "ethernet"
 """The clock domain of an edge whose clock is not that of the node."""
 
-_WORDS = 17
-"""Words between two clock domains: 16, which are enough for a word per cycle, and one behind."""
+_WORDS = 16
+"""Words between two clock domains: enough for a word per cycle."""
 
 _PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
@@ -138,13 +139,19 @@ class EthernetLink(wiring.Component):
         m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
-        width = datagram_layout(1).size
+        layout = datagram_layout(1)
+        # Without registers between, it is too long a way from the edge into a FIFO, or back.
+        before, behind = StreamSlice(layout), StreamSlice(layout)
+        m.submodules.before = DomainRenamer(_APART)(before)
+        m.submodules.behind = DomainRenamer(_APART)(behind)
+        wiring.connect(m, network.received, before.i)
+        wiring.connect(m, behind.o, network.sent)
         for name, source, target, domains in (
-            ("to_node", network.received, upper.datagrams_in, (_APART, "sync")),
-            ("to_edge", upper.datagrams_out, network.sent, ("sync", _APART)),
+            ("to_node", before.o, upper.datagrams_in, (_APART, "sync")),
+            ("to_edge", upper.datagrams_out, behind.i, ("sync", _APART)),
         ):
-            m.submodules[name] = fifo = AsyncFIFOBuffered(
-                width=width, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
+            m.submodules[name] = fifo = AsyncFIFO(
+                width=layout.size, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
             )
             m.d.comb += [
                 fifo.w_data.eq(source.payload),

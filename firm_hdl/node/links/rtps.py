@@ -13,9 +13,11 @@ from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
 from firm_hdl.node.links.udp import DatagramSignature
+from firm_hdl.node.rtps.assembler import Assembler
 from firm_hdl.node.rtps.endpoints import own_of, ports_of_link
 from firm_hdl.node.rtps.engine import Engine
-from firm_hdl.node.rtps.history import History, parts_of
+from firm_hdl.node.rtps.history import History, assembly_parts, parts_of
+from firm_hdl.node.rtps.intake import Intake
 from firm_hdl.node.rtps.messages import MessageReader
 from firm_hdl.node.rtps.templates import templates_of
 from firm_hdl.node.rtps.transmitter import Transmitter
@@ -80,12 +82,18 @@ class RtpsLink(wiring.Component):
         description, link = self.description, self.description.link
         own, templates = own_of(description, bytes(12)), templates_of(description)
         parts, ports = parts_of(own.writers), ports_of_link(description)
+        pieces = assembly_parts(description, own.readers)
         m.submodules.engine = engine = Engine(
-            description, templates, own.writers, own.readers, parts
+            description, templates, own.writers, own.readers, parts, pieces
         )
         m.submodules.fifo = fifo = PacketFifo(1, link.memory_bytes, link.packets, when_full="drop")
         m.submodules.reader = reader = MessageReader(link)
         m.submodules.width = width = PacketWidth(1, description.bus_bytes)
+        topics = tuple(each.topic.id for each in own.writers if each.topic)
+        m.submodules.intake = intake = Intake(
+            description.bus_bytes, topics, parts, engine.most_bytes
+        )
+        wiring.connect(m, engine.histories, intake.histories)
         m.submodules.history = history = History(engine.memory_bytes)
         m.submodules.transmitter = transmitter = Transmitter(
             templates, engine.memory_bytes, ports.discovery
@@ -111,19 +119,24 @@ class RtpsLink(wiring.Component):
             engine.came.eq(fifo.packets_out.valid),
             engine.nonce.eq(self.nonce),
             engine.idle.eq(self.idle),
-            *passes(self.sent, engine.sent),
+            *passes(self.sent, intake.sent),
             transmitter.order.eq(engine.order),
             transmitter.starts.eq(engine.starts),
             engine.ends.eq(transmitter.ends),
-            history.write_at.eq(engine.write_at),
-            history.write_byte.eq(engine.write_byte),
-            history.writes.eq(engine.writes),
+            history.write_at.eq(intake.write_at),
+            history.write_byte.eq(intake.write_byte),
+            history.writes.eq(intake.writes),
             history.read_at.eq(transmitter.read_at),
             history.reads.eq(transmitter.reads),
             transmitter.byte.eq(history.byte),
             *passes(transmitter.datagrams, self.datagrams_out),
         ]
-        passed = self._deliver(m, reader, engine, width)
+        assembler = None
+        if any(each.bytes for each in pieces):
+            m.submodules.assembler = assembler = Assembler(pieces, engine.rows)
+            wiring.connect(m, engine.assembly, assembler.lookup)
+            wiring.connect(m, reader.fragments, assembler.fragments)
+        passed = self._deliver(m, reader, engine, width, assembler)
         add_counters(
             m,
             self.counters,
@@ -134,7 +147,7 @@ class RtpsLink(wiring.Component):
                 "cut": engine.cut,
                 "stray": engine.stray | reader.stray | (ends & foreign),
                 "malformed": reader.malformed | (ends & came.payload.error & ~foreign),
-                "unsent": engine.unsent,
+                "unsent": engine.unsent | intake.unsent,
             },
         )
         m.d.comb += [
@@ -144,7 +157,12 @@ class RtpsLink(wiring.Component):
         return m
 
     def _deliver(
-        self, m: Module, reader: MessageReader, engine: Engine, width: PacketWidth
+        self,
+        m: Module,
+        reader: MessageReader,
+        engine: Engine,
+        width: PacketWidth,
+        assembler: Assembler | None,
     ) -> Value:
         """Pass payloads on to the topics. Return whether the last beat of one leaves."""
         out, inside, passed = self.received, Signal(), Signal()
@@ -159,7 +177,11 @@ class RtpsLink(wiring.Component):
             passed.eq(out.valid & out.ready & out.payload.beat.last),
             reader.drained.eq(~inside),
         ]
-        with m.If(reader.payload.valid & reader.payload.ready):
+        if assembler is not None:
+            m.d.comb += reader.drained.eq(~inside & ~assembler.busy)
+            with m.If(assembler.busy):
+                m.d.comb += passes(assembler.payload, width.packets_in)
+        with m.If(width.packets_in.valid & width.packets_in.ready):
             m.d.sync += inside.eq(1)
         with m.If(passed):
             m.d.sync += inside.eq(0)

@@ -11,23 +11,22 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
-from firm_hdl.gateware import PacketWidth
-from firm_hdl.gateware.memories import BlockMemory, LutMemory
+from firm_hdl.gateware.memories import BlockMemory
+from firm_hdl.node.capacity import largest_bytes
 from firm_hdl.node.description import Description
-from firm_hdl.node.gateware.streams import LinkSignature
+from firm_hdl.node.rtps.assembler import LookupSignature
 from firm_hdl.node.rtps.endpoints import Endpoint
 from firm_hdl.node.rtps.events import EventKind, announced_layout, event_layout, raw
-from firm_hdl.node.rtps.history import MOST_SAMPLES, Part
+from firm_hdl.node.rtps.history import MOST_SAMPLES, Part, bytes_of
+from firm_hdl.node.rtps.intake import HistoriesSignature, sample_layout
 from firm_hdl.node.rtps.names import digest_of
 from firm_hdl.node.rtps.tables import (
     BUILTIN_ROWS,
     identity_layout,
     peer_layout,
     row_layout,
-    sample_layout,
-    writer_layout,
 )
-from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, Templates
+from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, Templates, fragment_bytes
 from firm_hdl.node.rtps.transmitter import order_layout
 from firm_hdl.rtps.wire.guid import (
     PUBLICATIONS_READER,
@@ -83,6 +82,8 @@ class Engine(wiring.Component):
         As :class:`.Own` has them.
     parts : sequence of Part
         The memory of each writer but the first.
+    pieces : sequence of Part
+        The memory of each reader for samples that come in fragments.
 
     Members
     -------
@@ -92,8 +93,8 @@ class Engine(wiring.Component):
     idle : In(len(readers))
         The topic of a reader has passed on all that came. A sample waits for that, but not long:
         then a reliable one is asked for again, and any other one goes to its topic all the same.
-    sent : In(LinkSignature(bus_bytes))
-        Messages of publications and services.
+    histories : Out(HistoriesSignature(parts))
+        An :class:`.Intake`.
     nonce : In(32)
         Not 0: makes the GUID prefix of this start another one than those before. 0: the time at
         which the first datagram comes does so; without any, 4 seconds are waited for one.
@@ -101,11 +102,12 @@ class Engine(wiring.Component):
         A datagram is there.
     own : Out(96)
         GUID prefix.
+    assembly : Out(LookupSignature(...))
+        An :class:`.Assembler`, if there is one.
     order, starts, ends : as of a `Transmitter`
-    write_at, write_byte, writes : as of a `History`
     lost, late, stray, cut, unsent : Out(1)
         High for one cycle: samples that will not come; a sample that came twice; one that is for
-        nobody; one in fragments; what found no place, or has no way.
+        nobody; fragments that are not taken; what found no place, or has no way.
     """
 
     def __init__(
@@ -115,15 +117,24 @@ class Engine(wiring.Component):
         writers: tuple[Endpoint, ...],
         readers: tuple[Endpoint, ...],
         parts: tuple[Part, ...],
+        pieces: tuple[Part, ...],
     ):
         self.description, self.templates = description, templates
         self.writers, self.readers, self.parts = writers, readers, parts
-        self.memory_bytes = max(2, *(each.base + each.bytes for each in parts)) if parts else 2
+        self.memory_bytes = bytes_of(parts)
         self.address_bits = ceil_log2(self.memory_bytes)
         link = description.link
         self.peers = link.peers
         self.first_row = BUILTIN_ROWS * link.peers
         self.rows = self.first_row + link.matches
+        # Bytes of the largest sample that is sent whole, with up to three bytes of padding; and
+        # whether there are larger ones.
+        heads = templates.every[Job.SAMPLE : Job.REPLY + 1]
+        self.whole_bytes = link.datagram_bytes - max(each.size for each in heads) - 3
+        stores = [each.topic.store("out") for each in writers if each.topic]
+        largest = max((largest_bytes(description, each) for each in stores), default=0)
+        self.cuts = largest > self.whole_bytes
+        self.most_bytes = self.memory_bytes if self.cuts else max(0, self.whole_bytes)
         order = order_layout(len(templates.rom), self.memory_bytes)
         super().__init__(
             {
@@ -134,16 +145,14 @@ class Engine(wiring.Component):
                 "topic": Out(16),
                 "tag": Out(32),
                 "idle": In(max(1, len(readers))),
-                "sent": In(LinkSignature(description.bus_bytes)),
                 "nonce": In(32),
                 "came": In(1),
                 "own": Out(96),
+                "assembly": Out(LookupSignature(pieces, self.rows)),
                 "order": Out(order),
                 "starts": Out(1),
                 "ends": In(1),
-                "write_at": Out(self.address_bits),
-                "write_byte": Out(8),
-                "writes": Out(1),
+                "histories": Out(HistoriesSignature(parts)),
                 **dict.fromkeys(("lost", "late", "stray", "cut", "unsent"), Out(1)),
             }
         )
@@ -153,24 +162,30 @@ class Engine(wiring.Component):
         self._declare(m)
         self._ticks(m)
         self._compare(m)
-        self._declare_intake(m)
         with m.FSM():
             self._start(m)
             with m.State("IDLE"):
-                m.d.sync += [self._second.eq(0), self._turn.eq(1)]
+                m.d.sync += [self._second.eq(0), self._turn.eq(1), self._in_event.eq(0)]
                 self._begin_scan(m)
                 with m.If(self.events.valid & self._turn):
-                    m.d.sync += self._turn.eq(0)
+                    m.d.sync += [self._turn.eq(0), self._in_event.eq(1)]
                     m.next = "EVENT"
                 with m.Elif(self._second_due):
                     m.next = "SECOND"
                 with m.Elif(self._multicast_due | (self._static != 0) | self._due.any()):
                     m.next = "ANNOUNCE"
-                with m.Elif(self.sent.valid & self._quiet):
+                with m.Elif(self.histories.waits & self._quiet):
                     m.next = "INTAKE"
                 with m.Else():
                     m.d.sync += self._at.eq(self._sweep)
                     m.next = "ROW"
+            with m.State("INTAKE"):
+                m.d.comb += self.histories.takes.eq(1)
+                m.d.sync += [self._quiet.eq(0), self._clean.eq(0)]
+                with m.If(self.histories.ends):
+                    # Those who wait for it come next.
+                    m.d.sync += self._sweep.eq(self.first_row)
+                    m.next = "IDLE"
             self._announcements(m)
             self._events(m)
             self._participants(m)
@@ -178,8 +193,9 @@ class Engine(wiring.Component):
             self._matching(m)
             self._sweeping(m)
             self._sampling(m)
+            if self.cuts:
+                self._cutting(m)
             self._datagrams(m)
-            self._taking(m)
         return m
 
     # What the states share.
@@ -187,15 +203,12 @@ class Engine(wiring.Component):
     def _declare(self, m: Module) -> None:
         """Make the memories and the registers that several states use."""
         peers, rows, address = self.peers, self.rows, self.address_bits
+        link = self.description.link
         endpoints = max(_FIXED_WRITERS, _FIXED_READERS) + max(len(self.parts), len(self.readers))
         self._row = row = Signal(row_layout(peers, endpoints))
         self._rows = _memory(m, "rows", row.shape(), rows)
         self._peers = _memory(m, "peers", peer_layout(), peers)
-        samples = MOST_SAMPLES * max(1, len(self.parts))
-        self._samples = _memory(m, "samples", sample_layout(address), samples)
         self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
-        states = LutMemory(m, "states", writer_layout(address), max(2, len(self.parts)))
-        self._states, self._state = states, states.reader()
         # The row and the participant that are worked on, and what is known of our writer.
         self._row_at = Signal(range(rows))
         self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
@@ -213,11 +226,11 @@ class Engine(wiring.Component):
         self._left = Array(Signal(7, name=f"left_{n}") for n in range(peers))
         self._young = Array(Signal(2, name=f"young_{n}") for n in range(peers))
         self._dying = Array(Signal(2, name=f"dying_{n}") for n in range(peers))
-        self._sweep, self._turn = Signal(range(rows)), Signal()
+        self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
         self._tick_due, self._tick_pass, self._second_due = Signal(), Signal(), Signal()
-        self._statics = [int(IPv4Address(each)) for each in self.description.link.static_peers]
+        self._statics = [int(IPv4Address(each)) for each in link.static_peers]
         self._most_static = _STATIC_PARTICIPANTS * len(self._statics)
         self._multicast_due, self._static = Signal(), Signal(range(self._most_static + 1))
         # The datagram that is ordered.
@@ -227,7 +240,14 @@ class Engine(wiring.Component):
         self._bits, self._bitmap, self._is_final = Signal(32), Signal(32), Signal()
         self._address, self._port = Signal(32), Signal(16)
         self._start_at, self._size = Signal(range(len(self.templates.rom))), Signal(16)
-        self._sample = Signal(sample_layout(address))
+        self._sample = sample = Signal(sample_layout(address))
+        # What is sent of it: all, or a fragment; which one is next, and which ones are wanted: a
+        # bit for each from the next one on, and one for all behind.
+        self._sent_at, self._sent_bytes = sample.at, sample.bytes
+        if self.cuts:
+            self._sent_at, self._sent_bytes = Signal(address), Signal(16)
+        most_fragments = self.memory_bytes // fragment_bytes(link) + 1
+        self._fragment, self._wanted = Signal(range(most_fragments + 1)), Signal(33)
         self._identity = Signal(identity_layout(peers))
         self._nonce, self._cycles = Signal(32), Signal(32)
         m.d.sync += self._cycles.eq(self._cycles + 1)
@@ -242,6 +262,18 @@ class Engine(wiring.Component):
             self._peers.read_at.eq(self._at),
         ]
         self._fill_order(m)
+        event, assembly = self.events.payload, self.assembly
+        m.d.comb += [
+            assembly.reader.eq(row.local - _FIXED_READERS),
+            assembly.row.eq(self._row_at),
+            assembly.number.eq(row.next),
+            assembly.first.eq(event.bits),
+            assembly.fragments.eq(event.fragments),
+            assembly.fragment_bytes.eq(event.fragment_bytes),
+            assembly.sample_bytes.eq(event.last),
+            self.histories.writer.eq(row.local - _FIXED_WRITERS),
+            self.histories.number.eq(self._number),
+        ]
 
     def _fixed_prefix(self) -> int:
         """Return the first 8 bytes of the GUID prefix: the vendor (9.3.1.5), and the node's own."""
@@ -269,8 +301,8 @@ class Engine(wiring.Component):
             order.size.eq(self._size),
             order.address.eq(self._address),
             order.port.eq(self._port),
-            order.at.eq(self._sample.at),
-            order.payload_bytes.eq(self._sample.bytes),
+            order.at.eq(self._sent_at),
+            order.payload_bytes.eq(self._sent_bytes),
             fields.own.eq(self.own),
             fields.peer.eq(self._peer_row.prefix),
             fields.number.eq(self._number),
@@ -282,8 +314,8 @@ class Engine(wiring.Component):
             fields.flags.eq(_LITTLE | Mux(self._is_final, _FINAL, 0)),
             fields.related.eq(self._identity.guid),
             fields.related_number.eq(self._identity.number),
-            padded.eq(Cat(Const(0, 2), (self._sample.bytes + 3)[2:])),
-            head.eq(Mux(self._job == Job.REPLY, HEAD_BYTES[Job.REPLY], HEAD_BYTES[Job.SAMPLE])),
+            padded.eq(Cat(Const(0, 2), (self._sent_bytes + 3)[2:])),
+            head.eq(_at([HEAD_BYTES.get(each, 0) for each in Job], self._job)),
             fields.size.eq(head + padded),
         ]
         for number, part in enumerate(parts):
@@ -332,8 +364,6 @@ class Engine(wiring.Component):
             m.d.comb += [
                 self._rows.writes.eq(1),
                 self._rows.write_at.eq(self._at),
-                self._states.write.en.eq(1),
-                self._states.write.addr.eq(self._at),
             ]
             m.d.sync += self._at.eq(self._at + 1)
             with m.If(self._at == self.rows - 1):
@@ -392,10 +422,11 @@ class Engine(wiring.Component):
 
     def _events(self, m: Module) -> None:
         event, row = self.events.payload, self._row
+        is_answer = (event.kind == EventKind.ACKNACK) | (event.kind == EventKind.NACK_FRAG)
         with m.State("EVENT"):
             m.d.sync += [
                 self._accepts.eq(0),
-                self._key.eq(Mux(event.kind == EventKind.ACKNACK, event.reader, event.writer)),
+                self._key.eq(Mux(is_answer, event.reader, event.writer)),
             ]
             m.next = "FIND"
             with m.If(event.kind == EventKind.SOURCE):
@@ -426,7 +457,7 @@ class Engine(wiring.Component):
         with m.State("FOUND"):
             with m.If(self._second):
                 m.next = "MATCH"
-            with m.Elif(~self._hit | (row.writes != (event.kind == EventKind.ACKNACK))):
+            with m.Elif(~self._hit | (row.writes != is_answer)):
                 m.d.comb += self.stray.eq(1)
                 m.next = "DONE"
             with m.Else(), m.Switch(event.kind):
@@ -436,6 +467,8 @@ class Engine(wiring.Component):
                     m.next = "GAP"
                 with m.Case(EventKind.ACKNACK):
                     m.next = "ACKNACK"
+                with m.Case(EventKind.NACK_FRAG):
+                    m.next = "ROW_STATE" if self.cuts else "DONE"
                 with m.Default():
                     m.next = "SAMPLE"
 
@@ -540,7 +573,7 @@ class Engine(wiring.Component):
     # in order, those of SEDP as they come; `request` has those behind `next` that need not come.
 
     def _listening(self, m: Module) -> None:
-        event, row = self.events.payload, self._row
+        event, row, assembly = self.events.payload, self._row, self.assembly
         number, target = event.number, self._target
         is_sedp = self._row_at < self.first_row
         with m.State("HEARTBEAT"):
@@ -577,7 +610,8 @@ class Engine(wiring.Component):
                 takes.eq(Mux(row.reliable, row.synced & (ahead == 0), is_new)),
                 is_busy.eq(~is_sedp & ~is_fragment & ~self.idle.bit_select(user, 1)),
             ]
-            m.d.sync += [self._accepts.eq(takes), target.eq(number + 1)]
+            m.d.comb += assembly.number.eq(number)
+            m.d.sync += [self._accepts.eq(takes & ~is_fragment), target.eq(number + 1)]
             m.next = "SAMPLED"
             with m.If(is_sedp):
                 m.d.comb += takes.eq(is_new & (ahead < 32) & ((row.request & bit) == 0))
@@ -590,6 +624,12 @@ class Engine(wiring.Component):
             with m.Elif(takes & is_sedp):
                 m.d.sync += row.request.eq(row.request | bit)
                 m.next = "SETTLE"
+            with m.Elif(takes & is_fragment & (assembly.has_room | assembly.holds)):
+                m.d.comb += [assembly.accepts.eq(assembly.fits), self.cut.eq(~assembly.fits)]
+                with m.If(assembly.fits):
+                    m.d.sync += [self._accepts.eq(1), row.tries.eq(0)]
+                with m.Else():
+                    m.d.sync += row.ask.eq(row.ask | (row.reliable & (row.timer == 0)))
             with m.Elif(takes):
                 m.d.comb += [self.cut.eq(is_fragment), self.lost.eq(row.synced & (ahead != 0))]
                 # Of a best-effort writer, the first sample says where its samples begin.
@@ -701,10 +741,10 @@ class Engine(wiring.Component):
         local, depth = self._local, self._depth
         with m.State("MATCH"):
             is_graph = local == _GRAPH
-            m.d.comb += self._state.addr.eq(local - _FIXED_WRITERS)
+            m.d.comb += self.histories.writer.eq(local - _FIXED_WRITERS)
             m.d.sync += [
-                self._last.eq(Mux(is_graph, 1, self._state.data.last)),
-                self._gone.eq(Mux(is_graph, 0, self._state.data.gone)),
+                self._last.eq(Mux(is_graph, 1, self.histories.state.last)),
+                self._gone.eq(Mux(is_graph, 0, self.histories.state.gone)),
             ]
             m.next = "DONE"
             is_gone = event.kind == EventKind.ENDPOINT_GONE
@@ -721,6 +761,9 @@ class Engine(wiring.Component):
             kept, first = Signal(32), Signal(32)
             replays = (durable != 0) & self._is_durable
             m.d.comb += [
+                # The row may have been that of another writer.
+                self.assembly.reader.eq(local - _FIXED_READERS),
+                self.assembly.forgets.eq(is_writer),
                 kept.eq(self._last - self._gone),
                 first.eq(self._last + 1 - Mux(replays, Mux(kept > depth, depth, kept), 0)),
             ]
@@ -771,10 +814,9 @@ class Engine(wiring.Component):
         with m.State("ROW_STATE"):
             counts = [len(self.writers), len(self.readers), 1]
             is_fixed = row.local < _FIXED_WRITERS
-            m.d.comb += self._state.addr.eq(row.local - _FIXED_WRITERS)
             m.d.sync += [
-                self._last.eq(Mux(is_fixed, _at(counts, row.local), self._state.data.last)),
-                self._gone.eq(Mux(is_fixed, 0, self._state.data.gone)),
+                self._last.eq(Mux(is_fixed, _at(counts, row.local), self.histories.state.last)),
+                self._gone.eq(Mux(is_fixed, 0, self.histories.state.gone)),
             ]
             m.next = "ROW_LOWER"
             with m.If(~self._live.bit_select(row.peer, 1)):
@@ -785,6 +827,9 @@ class Engine(wiring.Component):
             m.next = "LISTENS"
             with m.If(row.writes):
                 m.next = "WRITES"
+            if self.cuts:
+                with m.If(self._in_event):
+                    m.next = "NACK_FRAG"
         self._writes_state(m)
         self._listens_state(m)
         with m.State("STORE"):
@@ -793,6 +838,7 @@ class Engine(wiring.Component):
         with m.State("NEXT"):
             m.d.sync += self._sweep.eq(self._sweep + 1)
             with m.If(self._sweep == self.rows - 1):
+                m.d.comb += self.assembly.tick.eq(self._tick_due)
                 m.d.sync += [
                     self._sweep.eq(0),
                     self._quiet.eq(self._clean),
@@ -813,6 +859,8 @@ class Engine(wiring.Component):
                 self._from.eq(self._lower),
                 self._to.eq(self._last),
                 self._is_final.eq(row.next > self._last),
+                self._fragment.eq(0),
+                self._wanted.eq(~0),
             ]
             m.next = "NEXT"
             with m.If(row.request != 0):
@@ -859,21 +907,28 @@ class Engine(wiring.Component):
 
     def _listens_state(self, m: Module) -> None:
         """Answer a writer (8.4.12.2): acknowledge what came, and ask for what is missing."""
-        row = self._row
+        row, assembly = self._row, self.assembly
         with m.State("LISTENS"):
-            missing = Signal(32)
-            m.d.comb += missing.eq(row.end - row.next)
-            is_many, lacks = missing >= 32, row.synced & (missing != 0)
+            missing, most, asked = Signal(32), Signal(6), Signal(6)
+            lacks = row.synced & (missing != 0)
+            m.d.comb += [
+                missing.eq(row.end - row.next),
+                # Fast DDS sends them in one datagram of up to 64 KiB, which may have no room here.
+                most.eq(Mux(row.tries < 5, Const(32, 6) >> row.tries[:3], 1)),
+                asked.eq(Mux(missing < most, missing, most)),
+            ]
             m.d.sync += [
                 self._number.eq(row.next),
-                self._bits.eq(Mux(is_many, 32, missing)),
-                self._bitmap.eq(
-                    ~row.request & ~(Const(0xFFFF_FFFF, 32) >> Mux(is_many, 32, missing[:6]))
-                ),
+                self._bits.eq(asked),
+                self._bitmap.eq(~row.request & ~(Const(0xFFFF_FFFF, 32) >> asked)),
                 self._is_final.eq(row.synced),
             ]
             m.next = "NEXT"
-            with m.If(row.ask & lacks & (row.tries == _MOST_TRIES)):
+            # Each HEARTBEAT asks for an answer, and each sample that comes again may bring one. So
+            # several that were asked for are waited for, or they would make ever more of them.
+            waits = lacks & (row.timer != 0) & (missing != 1) & (row.next < row.base)
+            is_due = row.ask & ~waits
+            with m.If(is_due & lacks & (row.tries == _MOST_TRIES)):
                 # Such as a sample that is larger than the memory: it will never come.
                 m.d.comb += self.lost.eq(1)
                 m.d.sync += [
@@ -882,19 +937,43 @@ class Engine(wiring.Component):
                     row.tries.eq(0),
                 ]
                 m.next = "STORE"
-            with m.Elif(row.ask):
+            with m.Elif(is_due):
                 m.d.sync += [
                     row.ask.eq(0),
-                    row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
-                    row.tries.eq(row.tries + lacks),
+                    row.base.eq(row.next + asked),
                 ]
+                with m.If(row.timer == 0):
+                    m.d.sync += [
+                        row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
+                        row.tries.eq(row.tries + lacks),
+                    ]
                 self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
+                with m.If(lacks & assembly.holds):
+                    m.d.sync += [
+                        self._from.eq(assembly.held.next),
+                        self._to.eq(assembly.held.sample_bytes - assembly.held.place),
+                        self._bits.eq(0),
+                        self._bitmap.eq(0),
+                    ]
+                    m.next = "COUNT"
             with m.Elif(self._tick_pass):
                 m.next = "STORE"
                 with m.If(row.timer != 0):
                     m.d.sync += row.timer.eq(row.timer - 1)
                 with m.Else():
-                    m.d.sync += row.ask.eq(row.reliable & (lacks | ~row.synced))
+                    m.d.sync += row.ask.eq(row.ask | (row.reliable & (lacks | ~row.synced)))
+
+        with m.State("COUNT"):
+            # Of the fragments that make up `_to` bytes, those that one word can name.
+            rest, step = self._to, assembly.held.fragment_bytes
+            m.d.sync += [
+                self._bits.eq(self._bits + 1),
+                self._bitmap.eq(Cat(self._bitmap[1:], 1)),
+                rest.eq(Mux(rest > step, rest - step, 0)),
+            ]
+            with m.If((rest == 0) | self._bits[5]):
+                m.d.sync += [self._bits.eq(self._bits), self._bitmap.eq(self._bitmap)]
+                self._send(m, Job.NACK_FRAG)
 
     # Samples of our writers.
 
@@ -904,15 +983,13 @@ class Engine(wiring.Component):
         identity, sample = self._identity, self._sample
         with m.State("FETCH"):
             firsts = [templates.writers, templates.readers, templates.graph]
-            user = row.local - _FIXED_WRITERS
-            place = Cat(self._number[: ceil_log2(MOST_SAMPLES)], user)
-            m.d.comb += [self._samples.read_at.eq(place), self._samples.reads.eq(1)]
+            m.d.comb += self.histories.fetches.eq(1)
             m.next = "FETCHED"
             with m.If(row.local < _FIXED_WRITERS):
                 m.d.sync += row.ask.eq(1)
                 self._send(m, _at(firsts, row.local) + self._number - 1)
         with m.State("FETCHED"):
-            m.d.sync += Value.cast(sample).eq(self._samples.word)
+            m.d.sync += sample.eq(self.histories.sample)
             m.next = "IDENTITY"
         services = [
             _FIXED_WRITERS - 1 + number
@@ -927,7 +1004,7 @@ class Engine(wiring.Component):
             is_reply = Cat(row.local == each for each in services).any() if services else Const(0)
             m.next = "IDENTIFIED"
             with m.If(~is_reply):
-                self._send(m, Job.SAMPLE)
+                self._send_sample(m, Job.SAMPLE, Job.FRAGMENT)
         with m.State("IDENTIFIED"):
             m.d.sync += Value.cast(identity).eq(self._identities.word)
             m.next = "REPLY"
@@ -936,10 +1013,74 @@ class Engine(wiring.Component):
             asked = identity.guid[96:]
             is_named = asked[24 + _READER_BIT]
             is_for = (identity.tag == sample.tag) & (identity.peer == row.peer)
-            self._send(m, Job.REPLY)
+            self._send_sample(m, Job.REPLY, Job.REPLY_FRAGMENT)
             with m.If(~is_for | (is_named & (asked != row.remote))):
                 m.d.sync += [self._from.eq(self._number), self._to.eq(self._number + 1)]
                 self._send(m, Job.GAP)
+
+    def _send_sample(self, m: Module, whole: Job, fragment: Job) -> None:
+        """Order the sample that was fetched, in fragments if it is large."""
+        sample = self._sample
+        self._send(m, whole)
+        if self.cuts:
+            m.d.sync += [self._sent_at.eq(sample.at), self._sent_bytes.eq(sample.bytes)]
+            with m.If(sample.bytes > self.whole_bytes):
+                m.d.sync += self._job.eq(fragment)
+                m.next = "FRAGMENT"
+
+    # Fragments (8.4.14).
+
+    def _cutting(self, m: Module) -> None:
+        """Order the wanted fragments of a sample one after another, then a heartbeat.
+
+        They are sent without a pause, so a sample needs no state of its own in each row. A
+        NACK_FRAG is answered in the same way, while its event waits.
+        """
+        event, row, sample = self.events.payload, self._row, self._sample
+        size = fragment_bytes(self.description.link)
+        with m.State("NACK_FRAG"):
+            fragment = event.last - 1
+            m.d.sync += [
+                self._number.eq(event.number),
+                self._fragment.eq(fragment),
+                self._wanted.eq(event.bits << 1),
+                row.tries.eq(0),
+                row.ask.eq(row.reliable),
+            ]
+            m.next = "STORE_EVENT"
+            is_there = (event.number >= self._lower) & (event.number <= self._last)
+            with m.If(is_there & (event.last != 0) & (fragment < self.memory_bytes // size)):
+                m.next = "FETCH"
+        with m.State("FRAGMENT"):
+            start, rest = Signal(self.address_bits + 1), Signal(self.address_bits + 1)
+            m.d.comb += [
+                start.eq(self._fragment << ceil_log2(size)),
+                rest.eq(sample.bytes - start),
+            ]
+            m.d.sync += [
+                self._sent_at.eq(sample.at + start),
+                self._sent_bytes.eq(Mux(rest > size, size, rest)),
+                self._from.eq(self._fragment + 1),
+                self._to.eq(sample.bytes),
+                self._at.eq(row.peer),
+            ]
+            m.next = "PEER"
+            with m.If((start >= sample.bytes) | (self._wanted == 0)):
+                m.d.sync += row.ask.eq(row.reliable)
+                m.next = "STORE"
+                with m.If(self._in_event):
+                    m.next = "STORE_EVENT"
+            with m.Elif(~self._wanted[32]):
+                self._pass_fragment(m)
+                m.next = "FRAGMENT"
+
+    def _pass_fragment(self, m: Module) -> None:
+        """Go on to the fragment behind. The lowest bit is that of all that have none."""
+        wanted = self._wanted
+        m.d.sync += [
+            self._fragment.eq(self._fragment + 1),
+            wanted.eq(Cat(wanted[0], wanted[0], wanted[1:32])),
+        ]
 
     # Datagrams.
 
@@ -963,7 +1104,7 @@ class Engine(wiring.Component):
             m.next = "JOB"
         with m.State("JOB"):
             every = self.templates.every
-            has_payload = (job == Job.SAMPLE) | (job == Job.REPLY)
+            has_payload = Cat(job == each for each in HEAD_BYTES).any()
             m.d.sync += [
                 self._start_at.eq(_at(self.templates.starts, job)),
                 self._size.eq(
@@ -979,116 +1120,12 @@ class Engine(wiring.Component):
             m.next = "IDLE"
             with m.If(self._stores):
                 m.next = "STORE"
-
-    # New samples.
-
-    def _declare_intake(self, m: Module) -> None:
-        """Make what a message goes through on its way into the history."""
-        address, sent = self.address_bits, self.sent
-        m.submodules.width = width = PacketWidth(self.description.bus_bytes, 1)
-        self._width, self._fed = width, Signal()
-        # Number of the writer, counted from that of the first topic.
-        self._user, self._tag, self._length = Signal.like(self._row.local), Signal(32), Signal(17)
-        self._taker, self._place = Signal(writer_layout(address)), Signal(address)
-        self._limit, base, mask = Signal(address + 1), Signal(address), Signal(address)
-        self._mask = mask
-        for number, part in enumerate(self.parts):
-            with m.If(self._user == number):
-                m.d.comb += [
-                    self._limit.eq(part.bytes),
-                    base.eq(part.base),
-                    mask.eq(part.bytes - 1),
-                ]
-        m.d.comb += [
-            width.packets_in.payload.eq(sent.payload.beat),
-            self.write_at.eq(base | (self._place & mask)),
-            self.write_byte.eq(width.packets_out.payload.data[0]),
-        ]
-
-    def _taking(self, m: Module) -> None:
-        """Take a message of a publication or a service into the history of its writer."""
-        sent, width, fed = self.sent, self._width, self._fed
-        user, tag, length = self._user, self._tag, self._length
-        state, place, limit, mask = self._taker, self._place, self._limit, self._mask
-        address, narrow = self.address_bits, width.packets_out
-        topics = [each.topic.id for each in self.writers if each.topic]
-        room = self.description.link.datagram_bytes
-        heads = self.templates.every[Job.SAMPLE : Job.REPLY + 1]
-        # With up to three bytes of padding.
-        most = room - max(each.size for each in heads) - 3
-        with m.State("INTAKE"):
-            known = Const(0)
-            for number, topic in enumerate(topics):
-                with m.If(sent.payload.topic == topic):
-                    m.d.sync += user.eq(number)
-                known = known | (sent.payload.topic == topic)
-            long = sent.payload.length
-            m.d.sync += [
-                tag.eq(sent.payload.tag),
-                length.eq(long),
-                fed.eq(0),
-                self._quiet.eq(0),
-                self._clean.eq(0),
-            ]
-            m.next = "INTAKE_STATE"
-            with m.If(~known | (long > most) | (long == 0)):
-                m.d.comb += self.unsent.eq(1)
-                m.next = "DISCARD"
-        with m.State("DISCARD"):
-            m.d.comb += sent.ready.eq(1)
-            with m.If(sent.valid & sent.payload.beat.last):
-                m.next = "IDLE"
-        with m.State("INTAKE_STATE"):
-            m.d.comb += self._state.addr.eq(user)
-            m.d.sync += [state.eq(self._state.data), place.eq(self._state.data.at)]
-            m.next = "ROOM"
-            with m.If(length > limit):
-                m.d.comb += self.unsent.eq(1)
-                m.next = "DISCARD"
-        oldest = Cat((state.gone + 1)[: ceil_log2(MOST_SAMPLES)], user)
-        with m.State("ROOM"):
-            is_full = (state.last - state.gone)[ceil_log2(MOST_SAMPLES)]
-            m.d.comb += [self._samples.read_at.eq(oldest), self._samples.reads.eq(1)]
-            m.next = "COPY"
-            with m.If(is_full | (state.used + length > limit)):
-                m.next = "FORGET"
-        with m.State("FORGET"):
-            freed = Signal(sample_layout(address))
-            m.d.comb += Value.cast(freed).eq(self._samples.word)
-            m.d.sync += [state.gone.eq(state.gone + 1), state.used.eq(state.used - freed.bytes)]
-            m.next = "ROOM"
-        with m.State("COPY"):
-            m.d.comb += [
-                width.packets_in.valid.eq(sent.valid & ~fed),
-                sent.ready.eq(width.packets_in.ready & ~fed),
-                narrow.ready.eq(1),
-                self.writes.eq(narrow.valid),
-            ]
-            with m.If(sent.valid & sent.ready & sent.payload.beat.last):
-                m.d.sync += fed.eq(1)
-            with m.If(narrow.valid):
-                m.d.sync += place.eq(place + 1)
-                with m.If(narrow.payload.last):
-                    m.next = "COPIED"
-        with m.State("COPIED"):
-            number = state.last + 1
-            word, written = self._samples.write_word, self._states.write
-            m.d.comb += [
-                self._samples.writes.eq(1),
-                self._samples.write_at.eq(Cat(number[: ceil_log2(MOST_SAMPLES)], user)),
-                word.at.eq(state.at),
-                word.bytes.eq(length),
-                word.tag.eq(tag),
-                written.en.eq(1),
-                written.addr.eq(user),
-                written.data.last.eq(number),
-                written.data.gone.eq(state.gone),
-                written.data.at.eq(place & mask),
-                written.data.used.eq(state.used + length),
-            ]
-            # Those who wait for it come next.
-            m.d.sync += self._sweep.eq(self.first_row)
-            m.next = "IDLE"
+                if self.cuts:
+                    with m.If(self._in_event):
+                        m.next = "STORE_EVENT"
+                    with m.If((job == Job.FRAGMENT) | (job == Job.REPLY_FRAGMENT)):
+                        self._pass_fragment(m)
+                        m.next = "FRAGMENT"
 
 
 def _memory(m: Module, name: str, shape: Any, depth: int) -> BlockMemory:

@@ -23,8 +23,9 @@ class EventKind(enum.Enum, shape=4):  # type: ignore[call-arg]
     SAMPLE
         DATA of another writer, before its payload. The answer tells whether the payload is wanted.
     FRAGMENT
-        DATA_FRAG of any writer.
-    HEARTBEAT, ACKNACK, GAP
+        DATA_FRAG of any writer. The answer tells whether the fragments are wanted. If they complete
+        a sample, `SAMPLE` follows.
+    HEARTBEAT, ACKNACK, GAP, NACK_FRAG
         The submessages of these names.
     """
 
@@ -38,6 +39,7 @@ class EventKind(enum.Enum, shape=4):  # type: ignore[call-arg]
     HEARTBEAT = 7
     ACKNACK = 8
     GAP = 9
+    NACK_FRAG = 10
 
 
 def event_layout() -> data.StructLayout:
@@ -53,9 +55,13 @@ def event_layout() -> data.StructLayout:
     number : unsigned(32)
         Sequence number of a sample; the first one of HEARTBEAT and GAP; the base of ACKNACK.
     last : unsigned(32)
-        The last number of HEARTBEAT; the base of GAP.
+        The last number of HEARTBEAT; the base of GAP and of NACK_FRAG; bytes of the sample of a
+        DATA_FRAG.
     bits : unsigned(32)
-        The first 32 bits of the set of ACKNACK or GAP; the highest is that of the base.
+        The first 32 bits of the set of ACKNACK, GAP or NACK_FRAG; the highest is that of the base.
+        Number of the first fragment of a DATA_FRAG.
+    fragments, fragment_bytes : unsigned(16)
+        How many fragments a DATA_FRAG has, and their size.
     is_final, is_gone : unsigned(1)
         Flag of HEARTBEAT and ACKNACK; whether a sample is none, but the end of an instance.
     related, has_related : unsigned(128), unsigned(1)
@@ -72,6 +78,8 @@ def event_layout() -> data.StructLayout:
             "number": _NUMBER,
             "last": _NUMBER,
             "bits": 32,
+            "fragments": 16,
+            "fragment_bytes": 16,
             "is_final": 1,
             "is_gone": 1,
             "related": 128,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from amaranth.hdl import Module
 from amaranth.lib import wiring
@@ -10,9 +10,11 @@ from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
 from firm_hdl.gateware.memories import BlockMemory
+from firm_hdl.node.capacity import assembly_bytes, largest_bytes
+from firm_hdl.node.description import Description
 from firm_hdl.node.rtps.endpoints import Endpoint
 
-__all__ = ["MOST_SAMPLES", "History", "Part", "parts_of"]
+__all__ = ["MOST_SAMPLES", "History", "Part", "assembly_parts", "bytes_of", "parts_of"]
 
 MOST_SAMPLES = 16
 """Samples that a writer keeps at most: a power of two. The depth of QoS is a request of at least as
@@ -21,34 +23,56 @@ many, where readers are served from the history; what has room is kept."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """The memory of a writer.
+    """The memory of a writer, or of a reader.
 
     Attributes
     ----------
     base, bytes : int
-        Where it begins, and its size: a power of two, of which `base` is a multiple.
+        Where it begins, and its size: a power of two, of which `base` is a multiple. Or 0: it has
+        none.
     depth : int
         Samples that a late reader gets, if it is not volatile.
     """
 
     base: int
     bytes: int
-    depth: int
+    depth: int = 1
+
+
+def bytes_of(parts: tuple[Part, ...]) -> int:
+    """Return the size of the memory that some parts are of; at least 2."""
+    return max([2, *(each.base + each.bytes for each in parts)])
 
 
 def parts_of(writers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
     """Return the memory of each writer of a topic, as large as that of the topic."""
     sizes = [each.topic.store("out").memory_bytes for each in writers if each.topic]
-    # Larger ones first, so that each begins at a multiple of its size.
+    depths = [each.data.qos.depth or MOST_SAMPLES for each in writers if each.topic]
+    return tuple(
+        replace(part, depth=min(depth, MOST_SAMPLES))
+        for part, depth in zip(_placed(sizes), depths, strict=True)
+    )
+
+
+def assembly_parts(description: Description, readers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
+    """Return the memory in which each reader puts a sample together that comes in fragments.
+
+    Readers whose messages fit into a datagram of `datagram_bytes` have none.
+    """
+    datagram = description.link.datagram_bytes
+    stores = [each.topic.store("in") for each in readers if each.topic]
+    return _placed(
+        [assembly_bytes(datagram, largest_bytes(description, store)) for store in stores]
+    )
+
+
+def _placed(sizes: list[int]) -> tuple[Part, ...]:
+    """Place parts, larger ones first: so each begins at a multiple of its size."""
     order = sorted(range(len(sizes)), key=lambda number: -sizes[number])
     bases, at = {}, 0
     for number in order:
         bases[number], at = at, at + sizes[number]
-    depths = [each.data.qos.depth or MOST_SAMPLES for each in writers if each.topic]
-    return tuple(
-        Part(base=bases[number], bytes=size, depth=min(depths[number], MOST_SAMPLES))
-        for number, size in enumerate(sizes)
-    )
+    return tuple(Part(base=bases[number], bytes=size) for number, size in enumerate(sizes))
 
 
 class History(wiring.Component):

@@ -11,6 +11,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.node.description import Link
 from firm_hdl.node.rtps.announcements import AnnouncementReader
+from firm_hdl.node.rtps.assembler import FragmentSignature
 from firm_hdl.node.rtps.events import EventKind, announced_layout, event_layout, raw
 from firm_hdl.node.rtps.parameters import ParameterReader, swapped
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER, SPDP_WRITER, SUBSCRIPTIONS_WRITER
@@ -24,6 +25,7 @@ from firm_hdl.rtps.wire.submessages import (
     InfoDestination,
     InfoSource,
     InfoTimestamp,
+    NackFrag,
 )
 
 __all__ = ["MessageReader"]
@@ -39,8 +41,11 @@ _LEAST = {
     Heartbeat.KIND: 28,
     AckNack.KIND: 24,
     Gap.KIND: 28,
+    NackFrag.KIND: 28,
 }
 _INFO = (InfoDestination.KIND, InfoSource.KIND)
+# What octetsToInlineQos is at least.
+_DATA_BYTES, _DATA_FRAG_BYTES = 16, 28
 _MOST_BITS = 256
 # Vendors whose identifier of the related sample is that of Fast DDS: Fast DDS, and we.
 _FAST_DDS = (0x0F01, 0xFF01)
@@ -78,10 +83,13 @@ class MessageReader(wiring.Component):
         payload of `SAMPLE` is wanted.
     payload : Out(PacketSignature(1))
         Payloads that are wanted.
-    payload_bytes : Out(16)
+    payload_bytes : Out(32)
         Bytes of the payload, in all its beats.
     drained : In(1)
         The payload has left; before that, nothing after it is read.
+    fragments : Out(FragmentSignature())
+        An :class:`.Assembler`, which takes the bytes of fragments. If it has a whole sample,
+        `SAMPLE` comes after `FRAGMENT`, and the payload is that of the assembler.
     malformed : Out(1)
         High for one cycle per datagram whose rest is dropped.
     stray : Out(1)
@@ -100,8 +108,9 @@ class MessageReader(wiring.Component):
                 "knows": In(1),
                 "wants": In(1),
                 "payload": Out(PacketSignature(1)),
-                "payload_bytes": Out(16),
+                "payload_bytes": Out(32),
                 "drained": In(1),
+                "fragments": Out(FragmentSignature()),
                 "malformed": Out(1),
                 "stray": Out(1),
             }
@@ -109,7 +118,7 @@ class MessageReader(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        packets, event = self.packets, self.events.payload
+        packets, event, fragments = self.packets, self.events.payload, self.fragments
         byte = packets.payload.data[0]
         # The last four bytes, the first of them lowest; and as a number in the sender's order.
         older, word, value = Signal(24), Signal(32), Signal(32)
@@ -120,6 +129,7 @@ class MessageReader(wiring.Component):
         flag_inline, flag_data, flag_key = flags[1], flags[2], flags[3]
         is_little = Signal()
         is_addressed, is_known, in_payload, is_fast = Signal(), Signal(), Signal(), Signal()
+        is_fragment, is_part = Signal(), Signal()
         skip, words = Signal(16), Signal(4)
         m.d.comb += [
             takes.eq(packets.valid & packets.ready),
@@ -129,6 +139,8 @@ class MessageReader(wiring.Component):
             Cat(self.payload.payload.data).eq(byte),
             self.payload.payload.count.eq(1),
             self.payload.payload.last.eq(left == 1),
+            is_fragment.eq(kind == DataFrag.KIND),
+            fragments.byte.eq(byte),
         ]
         with m.If(takes):
             m.d.sync += [
@@ -220,6 +232,7 @@ class MessageReader(wiring.Component):
                     event.has_related.eq(0),
                     event.entity.eq(0),
                     in_payload.eq(0),
+                    is_part.eq(0),
                 ]
                 m.next = "CHECK"
 
@@ -254,8 +267,9 @@ class MessageReader(wiring.Component):
                             with m.If(index == 4):
                                 emit(EventKind.SOURCE)
                         with m.Case(Data.KIND, DataFrag.KIND), m.Switch(index):
+                            halves = Mux(is_little, value, Cat(value[16:], value[:16]))
                             with m.Case(0):
-                                m.d.sync += skip.eq(Mux(is_little, value[16:], value[:16]))
+                                m.d.sync += skip.eq(halves[16:])
                             with m.Case(1):
                                 m.d.sync += event.reader.eq(word)
                             with m.Case(2):
@@ -264,8 +278,17 @@ class MessageReader(wiring.Component):
                                 m.d.comb += is_upper.eq(1)
                             with m.Case(4):
                                 m.d.sync += event.number.eq(value)
+                                with m.If(~is_fragment):
+                                    m.next = "DATA"
+                            with m.Case(5):
+                                m.d.sync += event.bits.eq(value)
+                            with m.Case(6):
+                                m.d.sync += Cat(event.fragments, event.fragment_bytes).eq(halves)
+                            with m.Case(7):
+                                m.d.sync += event.last.eq(value)
                                 m.next = "DATA"
-                        with m.Case(Heartbeat.KIND, AckNack.KIND, Gap.KIND):
+                        with m.Case(Heartbeat.KIND, AckNack.KIND, Gap.KIND, NackFrag.KIND):
+                            is_interval = (kind == Heartbeat.KIND) | (kind == Gap.KIND)
                             with m.Switch(index):
                                 with m.Case(0):
                                     m.d.sync += event.reader.eq(word)
@@ -276,12 +299,15 @@ class MessageReader(wiring.Component):
                                 with m.Case(3):
                                     m.d.sync += event.number.eq(value)
                                 with m.Case(4):
-                                    m.d.comb += is_upper.eq(kind != AckNack.KIND)
-                                with m.Case(5):
+                                    m.d.comb += is_upper.eq(is_interval)
+                                    with m.If(kind == NackFrag.KIND):
+                                        m.d.sync += event.last.eq(value)
+                                with m.Case(5), m.If(is_interval):
                                     m.d.sync += event.last.eq(value)
                             with m.If((kind == Heartbeat.KIND) & (index == 6)):
                                 m.next = "HEARTBEAT"
-                            is_count = Mux(kind == AckNack.KIND, index == 4, index == 6)
+                            place = Mux(kind == NackFrag.KIND, 5, 6)
+                            is_count = index == Mux(kind == AckNack.KIND, 4, place)
                             with m.If((kind != Heartbeat.KIND) & is_count):
                                 m.d.sync += words.eq((value + 31)[5:])
                                 restart("SET")
@@ -291,8 +317,9 @@ class MessageReader(wiring.Component):
                         malformed()
 
             with m.State("SET"):
-                # The first word of a set (9.4.2.6), if it has one. ACKNACK has a count behind it.
-                needed = Cat(0, 0, words) + Mux(kind == AckNack.KIND, 4, 0)
+                # The first word of a set (9.4.2.6), if it has one. All but GAP have a count behind
+                # it.
+                needed = Cat(0, 0, words) + Mux(kind == Gap.KIND, 0, 4)
                 is_short = (at == 0) & (left < needed)
                 m.d.comb += packets.ready.eq((words != 0) & ~is_short)
                 with m.If(is_short):
@@ -300,12 +327,15 @@ class MessageReader(wiring.Component):
                 with m.Elif(aligned | (words == 0)):
                     m.d.sync += event.bits.eq(Mux(words == 0, 0, value))
                     m.next = "SKIP"
-                    with m.If((kind == Gap.KIND) & (event.number == 0)):
+                    with m.If(is_known), m.Switch(kind):
+                        with m.Case(Gap.KIND):
+                            emit(EventKind.GAP)
+                        with m.Case(NackFrag.KIND):
+                            emit(EventKind.NACK_FRAG)
+                        with m.Default():
+                            emit(EventKind.ACKNACK)
+                    with m.If((kind != AckNack.KIND) & (event.number == 0)):
                         malformed()
-                    with m.Elif(is_known & (kind == Gap.KIND)):
-                        emit(EventKind.GAP)
-                    with m.Elif(is_known):
-                        emit(EventKind.ACKNACK)
 
             with m.State("HEARTBEAT"):
                 m.next = "SKIP"
@@ -316,17 +346,16 @@ class MessageReader(wiring.Component):
 
             with m.State("DATA"):
                 # 9.4.5.4: a later version may have more fields before the inline QoS.
-                m.d.sync += [skip.eq(Mux(skip < 16, 0, skip - 16)), event.is_gone.eq(0)]
+                least = Mux(is_fragment, _DATA_FRAG_BYTES, _DATA_BYTES)
+                m.d.sync += [skip.eq(Mux(skip < least, 0, skip - least)), event.is_gone.eq(0)]
                 m.next = "BEFORE_INLINE"
-                with m.If((kind == DataFrag.KIND) & is_known):
-                    emit(EventKind.FRAGMENT)
-                with m.Elif(kind == DataFrag.KIND):
-                    m.next = "SKIP"
-                with m.If(event.number == 0):
+                fields = (event.bits, event.fragments, event.fragment_bytes, event.last)
+                is_empty = Cat(each == 0 for each in fields).any()
+                with m.If((event.number == 0) | (is_fragment & is_empty)):
                     malformed()
 
             with m.State("BEFORE_INLINE"):
-                is_wrong = (skip > left) | (flag_data & flag_key)
+                is_wrong = (skip > left) | (~is_fragment & flag_data & flag_key)
                 m.d.comb += [packets.ready.eq((skip != 0) & ~is_wrong), parameters.begins.eq(1)]
                 with m.If(takes):
                     m.d.sync += skip.eq(skip - 1)
@@ -338,11 +367,13 @@ class MessageReader(wiring.Component):
                         m.next = "PARAMETERS"
 
             with m.State("CONTENT"):
-                gone = flag_key | ~flag_data
+                gone = ~is_fragment & (flag_key | ~flag_data)
                 m.d.sync += [event.is_gone.eq(gone), in_payload.eq(1)]
                 m.d.comb += announcement.begins.eq(1)
                 m.next = "SKIP"
-                with m.If(is_spdp):
+                with m.If(is_fragment & is_known):
+                    emit(EventKind.FRAGMENT)
+                with m.Elif(is_spdp & ~is_fragment):
                     with m.If(gone & is_known):
                         emit(EventKind.PARTICIPANT_GONE)
                     with m.Elif(~gone):
@@ -403,6 +434,12 @@ class MessageReader(wiring.Component):
                     with m.If((event.kind == EventKind.SAMPLE) & self.wants & ~event.is_gone):
                         m.d.sync += self.payload_bytes.eq(left)
                         m.next = "PAYLOAD"
+                        with m.If(is_part):
+                            m.d.comb += fragments.plays.eq(1)
+                            m.d.sync += self.payload_bytes.eq(event.last)
+                            m.next = "DRAIN"
+                    with m.If((event.kind == EventKind.FRAGMENT) & self.wants):
+                        m.next = "FRAGMENTS"
 
             with m.State("PAYLOAD"):
                 m.d.comb += [
@@ -412,8 +449,22 @@ class MessageReader(wiring.Component):
                 with m.If(takes & (left == 1)):
                     m.next = "DRAIN"
 
+            with m.State("FRAGMENTS"):
+                m.d.comb += [
+                    packets.ready.eq(fragments.wants & (left != 0)),
+                    fragments.takes.eq(takes),
+                ]
+                with m.If(fragments.is_whole):
+                    m.d.sync += is_part.eq(1)
+                    emit(EventKind.SAMPLE)
+                with m.Elif(~fragments.wants | (left == 0)):
+                    m.d.comb += fragments.stores.eq(1)
+                    m.next = "SKIP"
+                    with m.If(fragments.wants):
+                        malformed()
+
             with m.State("DRAIN"), m.If(self.drained):
-                restart("SUBMESSAGE")
+                m.next = "SKIP"
 
             with m.State("SKIP"):
                 m.d.comb += packets.ready.eq(left != 0)

@@ -1,4 +1,4 @@
-"""Rows of the engine's tables: peers, matched endpoints, samples, and requests."""
+"""Rows of the engine's tables: peers, matched endpoints, and requests."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ __all__ = [
     "identity_layout",
     "peer_layout",
     "row_layout",
-    "sample_layout",
-    "writer_layout",
 ]
 
 BUILTIN_ROWS = 4
@@ -48,8 +46,8 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
         The lowest number that is for this reader.
     base, request : unsigned(32)
         Of a reader: the number of the highest bit of `request`, whose bits are samples to send
-        again. Of a writer, the highest bit is that of `next`, and bits are samples that need not
-        come.
+        again. Of a writer: the lowest number that was never asked for; the highest bit of `request`
+        is that of `next`, and bits are samples that need not come.
     synced : unsigned(1)
         Whether the writer has said where its samples begin.
     ask : unsigned(1)
@@ -82,24 +80,6 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
             "user": locator,
         }
     )
-
-
-def writer_layout(address_bits: int) -> data.StructLayout:
-    """Return the state of one of our writers of topics.
-
-    Members
-    -------
-    last, gone : unsigned(32)
-        The newest number, and the newest of those that the history no longer has.
-    at, used : unsigned(address_bits), unsigned(address_bits + 1)
-        Place of the next byte in the writer's memory, and bytes in use.
-    """
-    return data.StructLayout({"last": 32, "gone": 32, "at": address_bits, "used": address_bits + 1})
-
-
-def sample_layout(address_bits: int) -> data.StructLayout:
-    """Return a sample of the history: its place, its bytes, and the tag of the request."""
-    return data.StructLayout({"at": address_bits, "bytes": 16, "tag": 32})
 
 
 def identity_layout(peers: int) -> data.StructLayout:

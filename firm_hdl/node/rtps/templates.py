@@ -12,7 +12,7 @@ from enum import IntEnum
 
 from amaranth.lib import data
 
-from firm_hdl.node.description import Description
+from firm_hdl.node.description import Description, Link
 from firm_hdl.node.rtps.endpoints import own_of
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import (
@@ -29,9 +29,11 @@ from firm_hdl.rtps.wire.parameters import ParameterList, identity
 from firm_hdl.rtps.wire.submessages import (
     AckNack,
     Data,
+    DataFrag,
     Gap,
     Heartbeat,
     InfoDestination,
+    NackFrag,
     NumberSet,
     Submessage,
     encode,
@@ -45,6 +47,7 @@ __all__ = [
     "Template",
     "Templates",
     "fields_layout",
+    "fragment_bytes",
     "op_layout",
     "templates_of",
 ]
@@ -69,8 +72,9 @@ FIELDS = {
 
 `own` and `peer` are GUID prefixes, `reader` and `writer` entity identifiers, and `related` is a
 GUID, in the order of the wire. All others are little-endian. Numbers are the lower half of sequence
-numbers, whose upper half is 0. `size` is the length of the submessage DATA, `flags` those of
-HEARTBEAT, whose second byte is not used.
+numbers, whose upper half is 0. `size` is the length of the submessage DATA or DATA_FRAG, `flags`
+those of HEARTBEAT, whose second byte is not used. A DATA_FRAG has its number in `first` and the
+size of the sample in `last`; a NACK_FRAG has in `first` the base of its set.
 """
 
 
@@ -92,6 +96,9 @@ class Job(IntEnum):
     ACKNACK_MISSING = 4
     SAMPLE = 5
     REPLY = 6
+    FRAGMENT = 7
+    REPLY_FRAGMENT = 8
+    NACK_FRAG = 9
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +152,12 @@ class Templates:
         return [sum(lengths[:number]) for number in range(len(lengths))]
 
 
+def fragment_bytes(link: Link) -> int:
+    """Return the size of fragments that fit into a datagram: a power of two."""
+    room = link.datagram_bytes - _SIZE_AT - 2 - HEAD_BYTES[Job.REPLY_FRAGMENT]
+    return 1 << max(_LEAST_FRAGMENT_BITS, room.bit_length() - 1)
+
+
 def fields_layout() -> data.StructLayout:
     """Return the fields, the first byte on the wire in the lowest bits."""
     return data.StructLayout({name: 8 * size for name, size in FIELDS.items()})
@@ -155,12 +168,14 @@ def op_layout() -> data.StructLayout:
     return data.StructLayout({"value": 8, "op": 2, "last": 1})
 
 
-HEAD_BYTES = {Job.SAMPLE: 20, Job.REPLY: 80}
-"""Bytes of the submessage DATA before its payload: 20 without inline QoS (9.4.5.4). A reply has two
-parameters of 28 bytes each, and the sentinel."""
+HEAD_BYTES = {Job.SAMPLE: 20, Job.REPLY: 80, Job.FRAGMENT: 32, Job.REPLY_FRAGMENT: 92}
+"""Bytes of a submessage before its payload: 20 of DATA, 32 of DATA_FRAG (9.4.5.4, 9.4.5.5). A reply
+has inline QoS: two parameters of 28 bytes each, and the sentinel."""
 
 _SIZE_AT = 20 + 16 + 2
 """Place of the length of a DATA behind the header and INFO_DST."""
+
+_LEAST_FRAGMENT_BITS = 6
 
 _HALF = 0x80
 """What is added to the number of a byte in the second writing."""
@@ -311,22 +326,46 @@ def _acknack(is_missing: bool) -> _Make:
     return make
 
 
-def _sample(is_reply: bool) -> _Make:
+def _nack_frag(description: Description, values: _Values) -> _Parts:
+    """Acknowledge what is below a sample, and ask for fragments of it."""
+    ends = {"reader": values.reader, "writer": values.writer, "count": values.count}
+    acknowledged = AckNack(missing=NumberSet(values.number), final=True, **ends)
+    missing = _Bits(values.first, written=values.of["bits"] + values.of["bitmap"])
+    answer = NackFrag(sequence_number=values.number, missing=missing, **ends)
+    return (values.to_peer(acknowledged, answer),)
+
+
+def _sample(*, is_reply: bool, is_fragment: bool) -> _Make:
+    """Write a sample with a heartbeat, or a fragment without."""
+
     def make(description: Description, values: _Values) -> _Parts:
         inline = ParameterList(())
         if is_reply:
             related = SampleIdentity(Guid.parse(values.of["related"]), values.related_number)
             inline = ParameterList(tuple(identity(related)))
-        sample = Data(
+        sample: Submessage = Data(
             reader=values.reader,
             writer=values.writer,
             sequence_number=values.number,
             payload=b"",
             inline=inline,
         )
+        if is_fragment:
+            sample = DataFrag(
+                reader=values.reader,
+                writer=values.writer,
+                sequence_number=values.number,
+                first=values.first,
+                count=1,
+                fragment_bytes=fragment_bytes(description.link),
+                sample_bytes=values.last,
+                payload=b"",
+                inline=inline,
+            )
         head = bytearray(values.to_peer(sample))
         head[_SIZE_AT : _SIZE_AT + 2] = values.of["size"]
-        return bytes(head), encode(_heartbeat_of(values, values.first, values.last))
+        heartbeat = encode(_heartbeat_of(values, values.first, values.last))
+        return bytes(head), b"" if is_fragment else heartbeat
 
     return make
 
@@ -337,7 +376,10 @@ _JOBS: tuple[_Make, ...] = (
     _gap,
     _acknack(is_missing=False),
     _acknack(is_missing=True),
-    _sample(is_reply=False),
-    _sample(is_reply=True),
+    _sample(is_reply=False, is_fragment=False),
+    _sample(is_reply=True, is_fragment=False),
+    _sample(is_reply=False, is_fragment=True),
+    _sample(is_reply=True, is_fragment=True),
+    _nack_frag,
 )
 """How the templates of `Job` are written, in their order."""

@@ -99,7 +99,7 @@ class Transmitter(wiring.Component):
         op = op_port.data
         at = Signal(range(len(self.rom) + 1))
         place = Signal(17)
-        moves, is_pad = Signal(), Signal()
+        moves, is_pad, is_last = Signal(), Signal(), Signal()
         field = Cat(order.fields).word_select(op.value[:7], 8)
         m.d.comb += [
             *passes(out.o, self.datagrams),
@@ -139,15 +139,17 @@ class Transmitter(wiring.Component):
                         m.next = "IDLE"
                 with m.If(is_payload):
                     m.d.comb += [op_port.en.eq(1), self.reads.eq(1)]
-                    m.d.sync += [at.eq(at + 1), place.eq(1)]
+                    m.d.sync += [at.eq(at + 1), place.eq(1), is_last.eq(op.last)]
                     m.next = "PAYLOAD"
             with m.State("PAYLOAD"):
                 # `place` is one ahead, as the memory answers a cycle later.
                 shown = Signal(17)
-                is_byte = Signal()
+                is_byte, is_end = Signal(), Signal()
                 m.d.comb += [
                     shown.eq(place - 1),
                     is_byte.eq(shown < order.payload_bytes),
+                    is_end.eq((place[:2] == 0) & is_pad),
+                    out.i.payload.last.eq(is_last & is_end),
                     out.i.valid.eq(1),
                     out.i.payload.data.eq(Mux(is_byte, self.byte, 0)),
                     op_port.en.eq(0),
@@ -155,8 +157,11 @@ class Transmitter(wiring.Component):
                 ]
                 with m.If(moves):
                     m.d.sync += place.eq(place + 1)
-                    with m.If((place[:2] == 0) & is_pad):
+                    with m.If(is_end):
+                        m.d.comb += self.ends.eq(is_last)
                         m.next = "PLAY"
+                        with m.If(is_last):
+                            m.next = "IDLE"
         return m
 
     def _init(self) -> list[dict[str, int]]:

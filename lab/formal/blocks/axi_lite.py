@@ -163,7 +163,10 @@ def studies() -> list[Study]:
         Claim("input moves", Bug(_SLAVE, "axi.awready.eq(~has_address)", "axi.awready.eq(0)")),
         Claim("reads move", Bug(_SLAVE, "axi.arready.eq(~has_read)", "axi.arready.eq(0)")),
         Claim("values", Bug(_BLOCK, "(value & ~mask[bits]) | ones", "ones")),
-        Claim("write answers", Bug(_BLOCK, "bus.write_fails.eq(0)", "bus.write_fails.eq(1)")),
+        Claim(
+            "write answers",
+            Bug(_BLOCK, "~Cat(selected.values()).any()", "Cat(selected.values()).any()"),
+        ),
         Claim("answers", Bug(_SLAVE, "Mux(bus.read_fails, SLVERR, OKAY)", "OKAY")),
     )
     return [Study("axi-lite", "`AxiLiteSlave`, `RegisterBlock` of 3 registers", _axi_lite, claims)]

@@ -88,6 +88,17 @@ def test_page_is_whole_and_shows_definitions_as_text(built):
     assert {"name.text.length", "wheels.items", "rest", "abc", "3.5", "OK"} <= words
 
 
+def test_the_readme_has_the_contract_of_the_page_and_names_files_that_exist(built):
+    text, page = (built / "README.md").read_text(), (built / "datasheet.html").read_text()
+    named = set(re.findall(r"`([\w/]+\.(?:vhd|v|txt|json|sh))`", text))
+    files = {str(path.relative_to(built)) for path in built.rglob("*") if path.is_file()}
+    assert len(named) > 10 and named <= files | {path.removeprefix("vhdl/") for path in files}
+    assert "\u202e" not in text and f"    # {EVIL[:-1]}" in text
+    _, _, contract = text.partition("## Contract")
+    rules = re.findall(r"^\* (.*)", contract.partition("##")[0], re.MULTILINE)
+    assert len(rules) > 8 and all(rule.replace("\\_", "_") in html.unescape(page) for rule in rules)
+
+
 def test_the_page_of_ros1_has_what_is_of_its_circuit(tmp_path):
     library(tmp_path / "src", {"p/Long": "float64[6] values\n"})
     words = ["--path", str(tmp_path / "src"), "--out", str(tmp_path), "--datasheet"]

@@ -229,7 +229,7 @@ def test_bench_reports_leftover_transfers(ghdl, tmp_path):
     text = file.read_text()
     for pattern, to in {
         r"(message_nanosec_valid +=> )nanosec_valid": r"\1open",
-        r"  message_nanosec_valid <= nanosec_valid;": "  nanosec_valid <= '1';",
+        r"(  nanosec_data <= )": r"  nanosec_valid <= '1';\n\1",
     }.items():
         text, count = re.subn(pattern, to, text, count=1)
         assert count == 1

@@ -76,9 +76,19 @@ def subscribe(topic, options):
     say(numbers=numbers)
 
 
+def echo(topic, options):
+    """Send back what comes, until this process is killed."""
+    reader = DataReader(topic.participant, topic, qos=qos())
+    back = Topic(topic.participant, options["back"], Text, qos=qos())
+    writer = DataWriter(topic.participant, back, qos=qos())
+    say(ready=True)
+    for message in reader.take_iter():
+        writer.write(message)
+
+
 if __name__ == "__main__":
     what, options = sys.argv[1], json.loads(sys.argv[2])
     kind = {"string": Text, "block": Block}[options["type"]]
     participant = DomainParticipant(options.get("domain", 0))
     topic = Topic(participant, options["topic"], kind, qos=qos())
-    {"publish": publish, "subscribe": subscribe}[what](topic, options)
+    {"publish": publish, "subscribe": subscribe, "echo": echo}[what](topic, options)

@@ -147,6 +147,36 @@ def trip(node, options):
     return say(numbers=numbers, seconds=seconds)
 
 
+def echo(node, options):
+    """Send back what comes, until this process is killed."""
+    publisher = node.create_publisher(String, options["back"], 10)
+    node.create_subscription(String, options["to"], publisher.publish, 10)
+    say(ready=True)
+    rclpy.spin(node)
+
+
+def delays(node, options):
+    """Let one message of 64 bytes at a time go and come back; tell the seconds of each."""
+    got, seconds = [], []
+    publisher = node.create_publisher(String, options["to"], 10)
+    node.create_subscription(String, options["back"], got.append, 10)
+    say(ready=True)
+    end = time.monotonic() + options.get("patience", 60)
+    while not (publisher.get_subscription_count() and node.count_publishers(options["back"])):
+        if time.monotonic() > end:
+            return say(failed="no echo")
+        rclpy.spin_once(node, timeout_sec=0.02)
+    time.sleep(1)
+    for number in range(options["count"]):
+        before, begin = len(got), time.monotonic()
+        publisher.publish(String(data=f"{number:055}"))
+        while len(got) == before and time.monotonic() < begin + 5:
+            rclpy.spin_once(node, timeout_sec=1)
+        seconds.append(time.monotonic() - begin)
+        time.sleep(0.01)
+    return say(seconds=seconds)
+
+
 def come_and_go(node, options):
     """Be another participant each time, which sends a message and waits until it comes back."""
     say(ready=True)
@@ -273,7 +303,7 @@ def call(node, options):
     answers = []
     for number in range(options["count"] if there else 0):
         future = client.call_async(SetBool.Request(data=bool(number & 1)))
-        rclpy.spin_until_future_complete(node, future, timeout_sec=5)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=options.get("timeout", 5))
         answer = future.result()
         answers.append(None if answer is None else [answer.success, answer.message])
     say(answers=answers)
@@ -305,6 +335,8 @@ if __name__ == "__main__":
         "publish": publish,
         "trip": trip,
         "come_and_go": come_and_go,
+        "echo": echo,
+        "delays": delays,
         "subscribe": subscribe,
         "graph": graph,
         "gone": gone,

@@ -294,7 +294,7 @@ def test_a_quiet_one_prints_no_figures(started, capsys, monkeypatch):
     monkeypatch.setattr(command, "_LOG_SECONDS", 0.0)
     command.run_bridge(ECHO, "udp://a:1")
     lines = capsys.readouterr().err.splitlines()
-    assert lines[0].startswith("echo, no board, to board 0/s")
+    assert lines[0].startswith("echo, waits for the board, to board 0/s")
     assert "dropped: 1 of /heard: bridge ended" in lines
     command.run_bridge(ECHO, "sim", engine="amaranth", quiet=True)
     (line,) = capsys.readouterr().err.splitlines()

@@ -6,6 +6,8 @@ peers, and what takes longer, are in ``tests/live/test_participant.py``.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from firm_hdl.rtps import Qos
@@ -13,35 +15,51 @@ from firm_hdl.rtps.events import Arrived
 from firm_hdl.rtps.ros import graph, names
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import is_builtin, user_reader, user_writer
-from firm_hdl.rtps.wire.submessages import AckNack, Data, Heartbeat, InfoDestination
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Heartbeat,
+    InfoDestination,
+    NackFrag,
+    NumberSet,
+    fragment,
+)
 from tests.depth import by_depth
 from tests.node.rtps.wires import Wires, core_of, description_of
 
 STRING = names.type_name("std_msgs/msg/String")
-# Sizes that are no multiples of 4 are padded on the way.
-MESSAGES = [b"\0\1\0\0" + bytes(range(n)) for n in (4, 7, 8)]
+# Sizes that are no multiples of 4 are padded on the way; the last one needs two fragments.
+MESSAGES = [b"\0\1\0\0" + bytes(n % 251 for n in range(size)) for size in (4, 7, 293)]
+FRAGMENT_BYTES, WANTED = 256, NumberSet(2, (2,))
 
 
 class Once:
-    """Lose the second sample of a topic, once in each direction."""
+    """Lose the second sample of a topic, and the first fragment, once in each direction."""
 
     def __init__(self):
         self.lost = set()
 
     def __call__(self, is_to_board, datagram):
         prefix = datagram[24:36] if datagram[20] == InfoDestination.KIND else bytes(12)
-        found = [each.submessage for each in message.read(datagram, prefix).received]
-        samples = [each for each in found if isinstance(each, Data) and not is_builtin(each.writer)]
-        if is_to_board in self.lost or not any(each.sequence_number == 2 for each in samples):
-            return False
-        self.lost.add(is_to_board)
-        return True
+        for each in message.read(datagram, prefix).received:
+            what = each.submessage
+            is_second = (
+                isinstance(what, Data) and what.sequence_number == 2 and not is_builtin(what.writer)
+            )
+            is_first = isinstance(what, DataFrag) and what.first == 1
+            key = is_to_board, is_first
+            if (is_second or is_first) and key not in self.lost:
+                self.lost.add(key)
+                return True
+        return False
 
 
 @pytest.mark.parametrize("has_losses", by_depth([False], [False, True]))
 def test_discovery_and_samples_both_ways(has_losses):
-    core, loses = core_of(1), Once()
-    wires = Wires(description_of(), core, loses=loses if has_losses else lambda *_: False)
+    core, loses = core_of(1, fragment_bytes=FRAGMENT_BYTES), Once()
+    description = description_of(datagram_bytes=448)
+    wires = Wires(description, core, loses=loses if has_losses else lambda *_: False)
     reader = core.add_reader("rt/said", STRING, Qos(), b"", 0.0)
     nodes = core.add_reader(graph.TOPIC, graph.TYPE, graph.QOS, b"", 0.0)
     writer = core.add_writer("rt/heard", STRING, Qos(depth=0), b"", 0.0)
@@ -53,28 +71,64 @@ def test_discovery_and_samples_both_ways(has_losses):
             if isinstance(each, Arrived) and each.reader == entity
         ]
 
-    def said(kind, end, entity):
-        return any(
-            isinstance(each.submessage, kind) and getattr(each.submessage, end) == entity
+    def said(kind, **fields):
+        return [
+            each.submessage
             for _, datagram in wires.sent
             for each in message.read(datagram, core.prefix).received
-        )
+            if isinstance(each.submessage, kind)
+            and all(getattr(each.submessage, name) == value for name, value in fields.items())
+        ]
 
     def script():
         wires.put(b"RTPS\2\3\1\xff" + bytes(range(12)) + b"\x15\1\xff\xff" + bytes(30))
         yield from wires.until(lambda: len(came(nodes.guid)) == 1)
         # The link greets a writer and a reader that it has matched.
-        greets = ((AckNack, "reader", user_reader(1)), (Heartbeat, "writer", user_writer(2)))
-        yield from wires.until(lambda: all(said(*each) for each in greets))
+        yield from wires.until(lambda: said(AckNack, reader=user_reader(1)))
+        yield from wires.until(lambda: said(Heartbeat, writer=user_writer(2)))
         for number, each in enumerate(MESSAGES):
             core.write(writer, each, wires.now, number)
             wires.to_send.append((2, 0, each))
         yield from wires.until(lambda: len(wires.received) == len(came(reader.guid)) == 3)
+        # Fragments that somebody misses, and no others.
+        before = len(said(DataFrag, first=2))
+        ends = {"reader": reader.guid.entity, "writer": user_writer(2), "sequence_number": 3}
+        wires.put(message.write(core.prefix, [NackFrag(**ends, missing=WANTED, count=99)]))
+        yield from wires.until(lambda: len(said(DataFrag, first=2)) > before)
+        assert has_losses or len(said(DataFrag, first=1)) == before
+        # Fragments that the link misses. Those with other sizes, or behind the end, are not those.
+        data = Data(
+            reader=user_reader(1),
+            writer=writer.guid.entity,
+            sequence_number=4,
+            payload=MESSAGES[2],
+        )
+        first, second = (fragment(data, number, FRAGMENT_BYTES) for number in (1, 2))
+        changes = [{"fragment_bytes": 252}, {"sample_bytes": 300}, {"sample_bytes": 1 << 20}]
+        others = [replace(second, **change) for change in (*changes, {"first": 9})]
+        begun = Heartbeat(
+            reader=user_reader(1), writer=writer.guid.entity, first=1, last=4, count=99
+        )
+        wires.put(message.write(core.prefix, [first, *others, begun]))
+        yield from wires.until(lambda: said(NackFrag, sequence_number=4, missing=WANTED))
+        wires.put(message.write(core.prefix, [second]))
+        yield from wires.until(lambda: len(wires.received) == 4)
 
     wires.run(script())
     (info,) = map(graph.GraphInfo.decode, came(nodes.guid))
     assert [(each.namespace, each.name) for each in info.nodes] == [("/fpga", "echo")]
-    assert wires.received == [(1, 1 + n, each) for n, each in enumerate(MESSAGES)]
-    assert came(reader.guid) == [each + bytes(-len(each) % 4) for each in MESSAGES]
-    assert loses.lost == ({False, True} if has_losses else set())
+    wanted = [*MESSAGES, MESSAGES[2]]
+    assert wires.received == [(1, 1 + n, each) for n, each in enumerate(wanted)]
+    whole, padded = [], came(reader.guid)
+    for each in MESSAGES:
+        # A sample in fragments has its size, as a whole one has not.
+        whole.append(each + bytes(-len(each) % 4) if len(each) < FRAGMENT_BYTES else each)
+    assert padded == whole
+    assert len(loses.lost) == (4 if has_losses else 0)
     assert wires.counters["malformed"] == 1
+    assert has_losses or wires.counters["cut"] == 4
+    if not has_losses:
+        # The header of a datagram, which was stored, has 60 bytes.
+        assert min(wires.waits) <= 80
+        begins = min(each for each in wires.sent_at if each > wires.taken_at[0])
+        assert begins - wires.taken_at[0] < 40

@@ -5,12 +5,21 @@ from __future__ import annotations
 from amaranth.sim import Simulator
 
 from firm_hdl.node.rtps.endpoints import own_of
-from firm_hdl.node.rtps.templates import FIELDS, HEAD_BYTES, Job, templates_of
+from firm_hdl.node.rtps.templates import HEAD_BYTES, Job, templates_of
 from firm_hdl.node.rtps.transmitter import Transmitter
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import SPDP_READER, SPDP_WRITER, Guid, SampleIdentity
 from firm_hdl.rtps.wire.parameters import ParameterList, identity
-from firm_hdl.rtps.wire.submessages import Data, Gap, Heartbeat, InfoDestination, NumberSet
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    InfoDestination,
+    NackFrag,
+    NumberSet,
+)
 from tests.node.rtps.wires import description_of
 
 OWN, PEER = bytes(range(0x10, 0x1C)), bytes(range(0x20, 0x2C))
@@ -26,9 +35,8 @@ FIELD_VALUES = {
     "first": (2).to_bytes(4, "little"),
     "last": (9).to_bytes(4, "little"),
     "count": (0x01020304).to_bytes(4, "little"),
-    "bits": bytes(4),
-    "bitmap": bytes(4),
-    "size": (HEAD_BYTES[Job.REPLY] + 12).to_bytes(2, "little"),
+    "bits": (2).to_bytes(4, "little"),
+    "bitmap": (3 << 30).to_bytes(4, "little"),
     "flags": b"\1\0",
     "related": bytes(RELATED),
     "related_number": (7).to_bytes(4, "little"),
@@ -42,8 +50,9 @@ def played(templates, job):
     got = bytearray()
 
     async def bench(ctx):
-        for name in FIELDS:
+        for name in FIELD_VALUES:
             ctx.set(order.fields[name], int.from_bytes(FIELD_VALUES[name], "little"))
+        ctx.set(order.fields.size, HEAD_BYTES.get(job, 0) + 12)
         ctx.set(order.start, templates.starts[job])
         # The payload lies across the end of the memory.
         ctx.set(order.mask, 15)
@@ -90,12 +99,27 @@ def test_the_circuit_writes_what_the_host_does():
         payload=own.participant.encode(),
     )
     gap = Gap(**ends, start=2, numbers=NumberSet(9))
+    # A DATA_FRAG has its number in `first`, and the size of the sample in `last`.
+    part = DataFrag(
+        **ends,
+        sequence_number=9,
+        first=2,
+        count=1,
+        fragment_bytes=1024,
+        sample_bytes=9,
+        payload=padded,
+        inline=inline,
+    )
+    has = AckNack(**ends, missing=NumberSet(9), count=0x01020304, final=True)
+    lacks = NackFrag(**ends, sequence_number=9, missing=NumberSet(2, (2, 3)), count=0x01020304)
     to = InfoDestination(PEER)
     for job, wanted in (
         (Job.ANNOUNCE, (announcement,)),
         (Job.HEARTBEAT, (to, heartbeat)),
         (Job.GAP, (to, gap)),
         (Job.REPLY, (to, reply, heartbeat)),
+        (Job.REPLY_FRAGMENT, (to, part)),
+        (Job.NACK_FRAG, (to, has, lacks)),
     ):
         assert played(templates, job) == message.write(OWN, wanted), job
 

@@ -29,9 +29,9 @@ distro: kilted
 bus_bytes: 1
 link: {{kind: rtps, address: {address}}}
 subscribe:
-  /heard: {{type: std_msgs/msg/String, memory_bytes: 256{heard}}}
+  /heard: {{type: std_msgs/msg/String, memory_bytes: 512{heard}}}
 publish:
-  /said: {{type: std_msgs/msg/String, memory_bytes: 256{said}}}
+  /said: {{type: std_msgs/msg/String, memory_bytes: 512{said}}}
 """
 
 
@@ -74,6 +74,10 @@ class Wires:
         Topic, tag, and bytes of the messages that came out of the link.
     to_send : deque of tuples
         Messages for the link.
+    waits : list of int
+        Cycles from the last byte of a datagram to the first one of the message that it has.
+    sent_at, taken_at : list of int
+        Cycles in which a datagram of the link began, and in which a message for it ended.
     now : float
     """
 
@@ -85,6 +89,9 @@ class Wires:
         self.to_send: deque[tuple[int, int, bytes]] = deque()
         self.to_link: deque[tuple[bytes, int]] = deque()
         self.events = {core: [] for core in cores}
+        self.waits: list[int] = []
+        self.sent_at: list[int] = []
+        self.taken_at: list[int] = []
         self.now = 0.0
         self.counters: dict[str, int] = {}
 
@@ -103,7 +110,7 @@ class Wires:
         simulator.add_testbench(bench)
         simulator.run()
 
-    def until(self, condition, seconds: float = 3.0):
+    def until(self, condition, seconds: float = 1.0):
         """Wait in a script until a condition holds."""
         end = self.now + seconds
         while not condition():
@@ -119,7 +126,7 @@ class Wires:
         ctx.set(link.nonce, 1)
         ctx.set(link.idle, 1)
         datagram, message, packet = bytearray(), bytearray(), None
-        coming, at, packet_at, cycles = None, 0, 0, 0
+        coming, at, packet_at, cycles, came_at = None, 0, 0, 0, 0
         while True:
             if cycles % 16 == 0:
                 self.now = cycles / CLOCK_HZ
@@ -138,6 +145,8 @@ class Wires:
                 ctx.get(each) for each in (rx.ready, sent.ready, tx.valid, received.valid)
             )
             if has_tx:
+                if not datagram:
+                    self.sent_at.append(cycles)
                 datagram.append(ctx.get(tx.payload.data))
                 if ctx.get(tx.payload.last):
                     assert ctx.get(tx.payload.length) == len(datagram)
@@ -148,6 +157,8 @@ class Wires:
                     )
                     datagram.clear()
             if has_message:
+                if not message:
+                    self.waits.append(cycles - came_at)
                 message.append(ctx.get(received.payload.beat.data[0]))
                 if ctx.get(received.payload.beat.last):
                     assert ctx.get(received.payload.length) == len(message)
@@ -159,7 +170,7 @@ class Wires:
             if coming is not None and took:
                 at += 1
                 if at == len(coming[0]):
-                    coming = None
+                    coming, came_at = None, cycles - 1
                     ctx.set(rx.valid, 0)
                 else:
                     self._offer(ctx, rx, coming, at)
@@ -167,6 +178,7 @@ class Wires:
                 packet_at += 1
                 if packet_at == len(packet[2]):
                     packet = None
+                    self.taken_at.append(cycles - 1)
                     ctx.set(sent.valid, 0)
                 else:
                     self._feed(ctx, sent, packet, packet_at)

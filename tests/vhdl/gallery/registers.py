@@ -12,37 +12,32 @@ from tests.vhdl.gallery import Design, shows, signals
     """\
 
   -- Registers.
-  signal o_q : unsigned(3 downto 0) := "0101";
+  signal r : unsigned(3 downto 0) := "0101";
 
   -- Combinational signals.
   signal total : unsigned(3 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal r : unsigned(3 downto 0);
 begin
 
-  total <= o_q + unsigned(i);
+  total <= r + unsigned(i);
 
   p_clk : process (clk)
   begin
     if rising_edge(clk) then
       if rst = '1' then
-        o_q <= "0101";
+        r <= "0101";
       else
-        o_q <= total xor unsigned(i);
+        r <= total xor unsigned(i);
       end if;
     end if;
   end process;
 
   o2 <= std_logic_vector(unsigned'(total(2 downto 0) & total(3)));
 
-  o <= std_logic_vector(o_q);
-
-  r <= o_q;
+  o <= std_logic_vector(r);
 """
 )
 def names_of_signals() -> Design:
-    """Signals keep their names; a second name of a register is one more signal."""
+    """Signals keep their names; a port that is a copy of a register needs no more signals."""
     m, (i, o, o2) = Module(), signals("i o o2", 4)
     r, total = Signal(4, name="r", init=5), Signal(4, name="total")
     m.d.comb += total.eq(r + i)

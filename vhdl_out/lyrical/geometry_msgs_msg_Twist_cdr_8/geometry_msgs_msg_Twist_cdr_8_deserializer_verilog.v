@@ -2,7 +2,16 @@
 // lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 // definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 // What each port means: manifest.json.
-// Steps, as `firm-hdl plan --program` prints and explains them:
+// Steps, as `firm-hdl plan --program` prints them.
+// One line a step: its number and name, what it takes, and where it leads. A step is one cycle.
+// "map": bytes at fixed places, at most two bus words. "items": a bus word of a string or an
+// array, which is a run of them. "rest": the last items of a run, which the next step takes
+// before its map; "rest x 8": of 8 bytes each. "lanes": the bytes of the bus, from 0 on. "unit
+// 4": bytes start and end at multiples of 4. "body": the step after a length that more than a
+// rest follows. "level 0": the outermost sequence of elements; "while level 0": while it has
+// elements left. "to 2 (+8)": the last byte of step 2 is 8 bytes after that of this step; with
+// "align 4 | 3", then down to a multiple of 4, and 3 more: from byte 21, "+6, align 4 | 3" leads
+// to byte 27. "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
 // deserializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4
 //   0 linear_x: map of 8; begins linear.x; checks 0=00 1=01; to 1 (+8)
 //   1 linear_x_2: map of 8; linear.x; begins linear.y; to 2 (+8)
@@ -14,14 +23,19 @@
 
 // Buffer: Give each beat a position in the ring; tell how many bytes of the current packet
 // arrived.
+//
+// The buffer itself stores no bytes: its readers write `beat` to memories of their own, and read
+// it from the next cycle on. The sequencer stores decoded lengths and flags, the mover the bytes.
+//
+// Latency 1 cycle from `packets` to `arrival.beat`, and 2 cycles to `arrival.limit`.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   input wire         rst,
   input wire         aclk,
   input wire         packets_valid,
   input wire         arrival_next,
   input wire [3:0]   freed,
-  input wire [68:0]  packets_payload,
-  output wire [73:0] arrival_beat,
+  input wire [68:0]  packets_payload,  // bits: data(63:0) count(67:64) last(68)
+  output wire [73:0] arrival_beat,  // bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
   output wire        packets_ready,
   output wire [6:0]  arrival_limit,
   output wire [3:0]  arrival_following,
@@ -29,15 +43,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
 );
 
   // Registers.
-  reg packets_ready_q = 1'b1;
+  reg room = 1'b1;
   reg [6:0] arrival_limit_q = 7'd0;
   reg [3:0] arrival_following_q = 4'd0;
   reg arrival_ended_q = 1'b0;
   reg full = 1'b0;
-  reg [68:0] payload = 69'd0;
+  reg [68:0] payload = 69'd0;  // bits as of packets_payload
   reg [3:0] arrived = 4'd0;
   reg [3:0] at = 4'd0;
-  reg [10:0] second = 11'd0;  // the end of the packet after the current one
+  // the end of the packet after the current one; bits: limit(6:0) following(10:7)
+  reg [10:0] second = 11'd0;
   reg has_second = 1'b0;
   reg [3:0] pushed = 4'd0;  // ends stored in the memory, modulo 2 laps
   reg [3:0] popped = 4'd0;  // ends taken out of it, modulo 2 laps
@@ -53,23 +68,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   wire [10:0] first;
   wire more;
   wire follows;
-  wire or_14;
+  wire takes_first;
   wire has_second_next;
   wire [10:0] ends_read_data;
   wire [3:0] payload_count;
   wire payload_last;
   wire [6:0] first_limit;
   wire [3:0] first_following;
-
-  // Signals that no logic reads, for simulation.
-  wire room;
-  wire [3:0] next_beat;
-  wire [2:0] ends_write_addr;
-  wire [10:0] ends_write_data;
-  wire ends_write_en;
-  wire [2:0] ends_read_addr;
-  wire [10:0] end_sig;
-  wire [10:0] newest;
 
   reg [10:0] ends [0:7];
   integer ends_at;
@@ -78,7 +83,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       ends[ends_at] = 11'd0;
   end
 
-  assign arrives = packets_valid & packets_ready_q;
+  assign arrives = packets_valid & room;
   assign used = arrived - freed;
   assign end_following = at + 4'd1;
   assign ends_now = full & payload_last;
@@ -88,7 +93,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign first = has_second ? second : {end_following, newest_limit};
   assign more = stored | ends_now;
   assign follows = arrival_ended_q & ends_now;
-  assign or_14 = arrival_next | ~arrival_ended_q;
+  assign takes_first = arrival_next | ~arrival_ended_q;
   assign has_second_next = has_second ? (~arrival_next | more) : (~arrival_next & follows);
 
   always @(posedge aclk) begin
@@ -101,7 +106,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       full <= 1'b0;
       arrived <= 4'd0;
       at <= 4'd0;
-      packets_ready_q <= 1'b1;
+      room <= 1'b1;
       arrival_limit_q <= 7'd0;
       arrival_following_q <= 4'd0;
       arrival_ended_q <= 1'b0;
@@ -113,8 +118,8 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
       full <= arrives;
       arrived <= arrived + {3'd0, arrives};
       at <= at + {3'd0, full};
-      packets_ready_q <= ~used[3] & ~((used == 4'd7) & arrives);
-      if (or_14) begin
+      room <= ~used[3] & ~((used == 4'd7) & arrives);
+      if (takes_first) begin
         arrival_limit_q <= first_limit;
         arrival_following_q <= first_following;
         arrival_ended_q <= has_second | ends_now;
@@ -146,27 +151,23 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer (
   assign first_following = first[10:7];
   assign arrival_beat = {full, at, payload};
 
-  assign packets_ready = packets_ready_q;
+  assign packets_ready = room;
   assign arrival_limit = arrival_limit_q;
   assign arrival_following = arrival_following_q;
   assign arrival_ended = arrival_ended_q;
-
-  assign room = packets_ready_q;
-  assign next_beat = end_following;
-  assign ends_write_addr = pushed[2:0];
-  assign ends_write_data = {end_following, end_limit};
-  assign ends_write_en = 1'b1;
-  assign ends_read_addr = popped[2:0];
-  assign end_sig = {end_following, end_limit};
-  assign newest = {end_following, newest_limit};
 endmodule
 
 // ByteFlags: Flags of the packet buffer: one for each byte, and those of headers for each beat.
+//
+// Whether a beat is that of a header is not known as it arrives. So every beat is compared with
+// the checked bytes of each header state, and the sequencer reads the flag of the right beat.
+//
+// Flags are written together with their beat, and read combinationally.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags (
   input wire        rst,
   input wire        aclk,
   output wire       mismatch,
-  input wire [73:0] beat,
+  input wire [73:0] beat,  // bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
   input wire [3:0]  header_at
 );
 
@@ -177,12 +178,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
   wire beat_last;
   wire [3:0] beat_at;
   wire beat_valid;
-
-  // Signals that no logic reads, for simulation.
-  wire [2:0] headers_table_write_addr;
-  wire headers_table_write_en;
-  wire [2:0] headers_table_read_addr;
-  wire headers_table_read_data;
 
   reg [0:0] headers_table [0:7];
   integer headers_table_at;
@@ -206,25 +201,51 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_fl
   assign beat_last = beat[68];
   assign beat_at = beat[72:69];
   assign beat_valid = beat[73];
-
-  assign headers_table_write_addr = beat[71:69];
-  assign headers_table_write_en = beat[73];
-  assign headers_table_read_addr = header_at[2:0];
-  assign headers_table_read_data = mismatch;
 endmodule
 
 // Sequencer: Run a program over the packets in the buffer: check them, and give orders to the
 // mover.
+//
+// Each state gives one order, once all its bytes are in the buffer. The sequencer waits only for
+// bytes and for `orders.ready`. The last order of a packet carries its status. The page "How the
+// converters work" follows one packet through all cycles.
+//
+// An error in the bytes of a state takes two cycles: one finds it, and one computes which bytes
+// are good. Then the state is ordered with its good bytes. All later states are ordered without
+// bytes and with lengths of 0, and the rest of the packet is dropped:
+//
+//     cycle         | 0        | 1         | 2            | 3
+//     state         | s        | s         | s            | next one
+//     found         | 1        |           |              |
+//     bad           |          | 1         | 1            | 1
+//     new_error     |          | 1         |              |
+//     *_room        |          |           | good bytes   | 0
+//     orders.valid  |          |           | s            | next one
+//
+// A length over its limit takes no cycle: its state transfers it as 0.
+//
+// A length that is charged to the Budget stalls the sequencer before the next state. Its
+// order waits, too. If the length claims too much, its order transfers it as 0, and the sequencer
+// goes back to the length's state, and leaves it with an order that has no state:
+//
+//     cycle         | 0        | 1         | 2         | 3         | 4           | 5
+//     state         | length   | body      | body      | body      | body        | length
+//     pending       |          | 1         | 1         | 1         | 1           |
+//     zero_length   |          |           |           |           | 1           |
+//     orders.valid  | length   |           |           |           |             | blank
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   input wire         rst,
   input wire         aclk,
   output wire        orders_valid,
   output wire        arrival_next,
   input wire         orders_ready,
-  input wire [73:0]  beat,
+  input wire [73:0]  beat,  // bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
   input wire [6:0]   arrival_limit,
   input wire [3:0]   arrival_following,
   input wire         arrival_ended,
+  // bits: step(2:0) blank(3) items_at(9:4) map_at(15:10) items_next(18:16) map_next(21:19)
+  // items_bytes(25:22) map_bytes(29:26) items(30) last(31) length_good(32) final(33) first(37:34)
+  // ends(38) status(41:39)
   output wire [41:0] orders_payload,
   output wire [3:0]  header_at
 );
@@ -242,12 +263,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   reg new_error = 1'b0;
   reg [3:0] items_room = 4'd0;
   reg [3:0] map_room = 4'd0;
-  reg rest = 1'b0;
+  reg rest = 1'b0;  // items in the rest of the run
   reg has_nul = 1'b0;
-  reg [6:0] first_at = 7'd0;
-  reg [6:0] last_at = 7'd7;
-  reg words_last = 1'b1;
-  reg words_less = 1'b0;
+  reg [6:0] first_at = 7'd0;  // first byte after the step before
+  reg [6:0] last_at = 7'd7;  // last byte of the step's map or word
+  reg words_last = 1'b1;  // one is left
   reg step_linear_x = 1'b1;  // step 0: map of 8; begins linear.x
   reg step_linear_x_2 = 1'b0;  // step 1: map of 8; linear.x; begins linear.y
   reg step_linear_y = 1'b0;  // step 2: map of 8; linear.y; begins linear.z
@@ -255,15 +275,15 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   reg step_angular_x = 1'b0;  // step 4: map of 8; angular.x; begins angular.y
   reg step_angular_y = 1'b0;  // step 5: map of 12 in two words; angular.y angular.z
   reg step_packet_end = 1'b0;  // step 6: end of the packet
-  reg at_end = 1'b0;
+  reg at_end = 1'b0;  // the message is over, but not the packet
   reg [4:0] map_offset = 5'd25;  // signed: first byte of the map's last word, relative to last_at
-  reg two_word_map = 1'b0;
-  reg [5:0] exit_add = 6'd8;
+  reg two_word_map = 1'b0;  // the map has two bus words
+  reg [5:0] exit_add = 6'd8;  // bytes from last_at to the last byte of the step after it
 
   // Combinational signals.
   wire mismatch;
+  wire [6:0] not_last_at;  // -1 - last_at
   wire [6:0] step_end;
-  wire [6:0] not_2;
   wire [6:0] left;
   wire present;
   wire ends_message;
@@ -274,15 +294,20 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   wire bytes_good;
   wire stops;
   wire drains;
-  wire orders_payload_length_good;
+  wire length_accepted;
   wire allowed;
   wire issue;
+  wire [3:0] first_beat_of_map;
   wire [6:0] map_at;
-  wire [3:0] sub_64;
-  wire [5:0] sub_74;
-  wire [5:0] or_119;
-  wire [6:0] map_left;
+  wire [5:0] one_less_map_offset;  // 1 - map_offset, signed
+  wire [5:0] map_left_carries;  // of the sum of three numbers, bit by bit; one addition is left
+  wire [6:0] map_left_without_carries;
+  wire [6:0] map_left;  // signed: limit - map_at
   wire [3:0] map_room_if_cut;
+  wire [6:0] items_left;
+  wire [3:0] rest_room_if_cut;
+  wire [3:0] items_room_if_cut;
+  wire bad_drained;
   wire [2:0] orders_payload_items_next;
   wire [2:0] orders_payload_map_next;
   wire [3:0] orders_payload_items_bytes;
@@ -290,50 +315,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire [2:0] orders_payload_status;
   wire [6:0] exit_sum;
+  wire [6:0] last_at_of_next_packet;  // its first step ends 7 bytes after its first byte
   wire [6:0] early_last_at;
-  wire to_exit;
-  wire and_190;
-  wire [3:0] items_room_next;
-  wire [6:0] first_at_next;
-  wire map_offset_next_3;
+  wire [6:0] first_at_if_bad;
+  wire moves_on;
+  wire map_offset_next_3;  // also map_offset_next_4
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire [2:0] good_status;
   wire [5:0] orders_payload_map_at;
-
-  // Signals that no logic reads, for simulation.
-  wire [73:0] arrival_beat;
-  wire [6:0] nul_at;
-  wire [6:0] nul_at_17;
-  wire nonzero;
-  wire [6:0] nul_within;
-  wire [3:0] oldest;
-  wire [6:0] items_at;
-  wire [6:0] next_packet;
-  wire [5:0] over_rest;
-  wire [6:0] to_exit_low;
-  wire [6:0] body_sum;
-  wire [6:0] to_body_low;
-  wire words_loads;
-  wire exits_always;
-  wire done;
-  wire wrong_nul;
-  wire [3:0] items_wanted;
-  wire [5:0] exit_amount;
-  wire [2:0] to_exit_mask;
-  wire [6:0] exit_last_at;
-  wire [5:0] body_amount;
-  wire [2:0] to_body_mask;
-  wire [6:0] body_last_at;
-  wire [6:0] next_last_at;
-  wire to_body;
-  wire words_down;
-  wire words_keeps;
-  wire words_is_small;
-  wire words_is_2;
-  wire words_is_3;
-  wire words_is_4;
-  wire words_pending;
-  wire [2:0] words_value;
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer_byte_flags byte_flags (
     .aclk      (aclk),
@@ -343,9 +332,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
     .header_at (first_at[6:3])
   );
 
+  assign not_last_at = ~last_at;
   assign step_end = last_at + 7'd1;
-  assign not_2 = ~last_at;
-  assign left = arrival_limit + not_2;
+  assign left = arrival_limit + not_last_at;
   assign present = ~left[6];
   assign ends_message = at_end | step_angular_y;
   assign ends_packet = ends_message & arrival_ended;
@@ -355,32 +344,36 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
   assign bytes_good = present & ~(step_linear_x & mismatch);
   assign stops = header_error | cut | (ends_message & ~arrival_ended & trailing);
   assign drains = bad & ~new_error & (~at_end | arrival_ended);
-  assign orders_payload_length_good = ~bad;
-  assign allowed = orders_payload_length_good & (~ends_message | arrival_ended);
+  assign length_accepted = ~bad;
+  assign allowed = length_accepted & (~ends_message | arrival_ended);
   assign orders_valid = drains | (allowed & bytes_good);
   assign issue = (drains & orders_ready) | (allowed & orders_ready & bytes_good);
   assign arrival_next = (drains & orders_ready & ends_packet) | (allowed & orders_ready &
       ends_packet & bytes_good);
+  assign first_beat_of_map = map_at[6:3] - {3'd0, two_word_map};
   assign map_at = last_at + {{2{map_offset[4]}}, map_offset};
-  assign sub_64 = map_at[6:3] - {3'd0, two_word_map};
-  assign sub_74 = 6'd1 - {{1{map_offset[4]}}, map_offset};
-  assign or_119 = (arrival_limit[5:0] & not_2[5:0]) | (arrival_limit[5:0] & sub_74) | (not_2[5:0] &
-      sub_74);
-  assign map_left = (arrival_limit ^ not_2 ^ {sub_74[5], sub_74}) + {or_119, 1'b0};
+  assign one_less_map_offset = 6'd1 - {{1{map_offset[4]}}, map_offset};
+  assign map_left_carries = (arrival_limit[5:0] & not_last_at[5:0]) | (arrival_limit[5:0] &
+      one_less_map_offset) | (not_last_at[5:0] & one_less_map_offset);
+  assign map_left_without_carries = arrival_limit ^ not_last_at ^ {one_less_map_offset[5],
+      one_less_map_offset};
+  assign map_left = map_left_without_carries + {map_left_carries, 1'b0};
   assign map_room_if_cut = map_left[6] ? 4'd0 : ((map_left >= 7'd8) ? 4'd8 : map_left[3:0]);
-  assign orders_payload_items_next = sub_64[2:0] + 3'd1;
+  assign items_left = arrival_limit - first_at;
+  assign rest_room_if_cut = items_left[6] ? 4'd0 : ((items_left >= 7'd8) ? 4'd8 : items_left[3:0]);
+  assign items_room_if_cut = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
+      3'd0} : 4'd8) : map_room_if_cut;
+  assign bad_drained = bad & drains & orders_ready;
+  assign orders_payload_items_next = first_beat_of_map[2:0] + 3'd1;
   assign orders_payload_map_next = orders_payload_map_at[5:3] + 3'd1;
   assign orders_payload_items_bytes = (bad && (items_room < 4'd8)) ? items_room : 4'd8;
   assign orders_payload_map_bytes = bad ? map_room : 4'd8;
   assign orders_payload_status = bad ? code : good_status;
   assign exit_sum = last_at + {1'd0, exit_add};
-  assign early_last_at = ends_packet ? ({arrival_following, 3'd0} + 7'd7) : exit_sum;
-  assign to_exit = issue & ~ends_packet;
-  assign and_190 = bad & drains & orders_ready;
-  assign items_room_next = two_word_map ? (map_left[6] ? {1'b0, (&map_left[6:3]) ? map_left[2:0] :
-      3'd0} : 4'd8) : map_room_if_cut;
-  assign first_at_next = ends_packet ? {arrival_following, 3'd0} : (bad ? (at_end ? arrival_limit :
-      first_at) : step_end);
+  assign last_at_of_next_packet = {arrival_following, 3'd0} + 7'd7;
+  assign early_last_at = ends_packet ? last_at_of_next_packet : exit_sum;
+  assign first_at_if_bad = at_end ? arrival_limit : first_at;
+  assign moves_on = issue & ~ends_packet;
   assign map_offset_next_3 = step_linear_x | step_linear_x_2 | step_linear_y | step_linear_z |
       step_angular_x;
 
@@ -399,7 +392,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
       first_at <= 7'd0;
       last_at <= 7'd7;
       words_last <= 1'b1;
-      words_less <= 1'b0;
       step_linear_x <= 1'b1;
       step_linear_x_2 <= 1'b0;
       step_linear_y <= 1'b0;
@@ -414,7 +406,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
     end else begin
       if (issue && ends_packet) begin
         bad <= 1'b0;
-      end else if (orders_payload_length_good) begin
+      end else if (length_accepted) begin
         bad <= stops;
         if (ends_message) begin
           code <= STATUS_TRAILING;
@@ -427,7 +419,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           code <= STATUS_TRUNCATED;
         end
       end
-      new_error <= stops & orders_payload_length_good;
+      new_error <= stops & length_accepted;
       if (bad && new_error) begin
         if ((code == STATUS_TRAILING) || (code == STATUS_STRING)) begin
           items_room <= 4'd8;
@@ -435,7 +427,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
           items_room <= 4'd0;
         end
         if (code == STATUS_TRUNCATED) begin
-          items_room <= items_room_next;
+          items_room <= items_room_if_cut;
         end
         if (code == STATUS_TRAILING) begin
           map_room <= 4'd8;
@@ -445,7 +437,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
         if (code == STATUS_TRUNCATED) begin
           map_room <= map_room_if_cut;
         end
-      end else if (and_190) begin
+      end else if (bad_drained) begin
         items_room <= 4'd0;
         map_room <= 4'd0;
       end
@@ -484,54 +476,27 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_sequencer (
         end
       end
       if (issue || (bad && at_end)) begin
-        first_at <= first_at_next;
+        if (ends_packet) begin
+          first_at <= {arrival_following, 3'd0};
+        end else begin
+          if (bad) begin
+            first_at <= first_at_if_bad;
+          end else begin
+            first_at <= step_end;
+          end
+        end
       end
       words_last <= words_last;
-      words_less <= words_less;
     end
   end
 
   assign header_at = first_at[6:3];
   assign orders_payload_map_at = map_at[5:0];
-  assign orders_payload = {orders_payload_status, ends_packet, first_at[6:3], 1'b0,
-      orders_payload_length_good, words_last, 1'b0, orders_payload_map_bytes,
-      orders_payload_items_bytes, orders_payload_map_next, orders_payload_items_next, map_at[5:0],
-      sub_64[2:0], map_at[2:0], at_end, step_angular_x | step_angular_y, step_linear_y |
-      step_linear_z, step_linear_x_2 | step_linear_z | step_angular_y};
-
-  assign arrival_beat = beat;
-  assign nul_at = 7'd0;
-  assign nul_at_17 = 7'd0;
-  assign nonzero = 1'b0;
-  assign nul_within = arrival_limit;
-  assign oldest = first_at[6:3];
-  assign items_at = {sub_64, map_at[2:0]};
-  assign next_packet = {arrival_following, 3'd0};
-  assign over_rest = 6'd0;
-  assign to_exit_low = 7'd0;
-  assign body_sum = last_at;
-  assign to_body_low = 7'd0;
-  assign words_loads = 1'b0;
-  assign exits_always = 1'b1;
-  assign done = 1'b1;
-  assign wrong_nul = 1'b0;
-  assign items_wanted = 4'd8;
-  assign exit_amount = exit_add;
-  assign to_exit_mask = 3'd0;
-  assign exit_last_at = exit_sum;
-  assign body_amount = 6'd0;
-  assign to_body_mask = 3'd0;
-  assign body_last_at = last_at;
-  assign next_last_at = early_last_at;
-  assign to_body = 1'b0;
-  assign words_down = 1'b0;
-  assign words_keeps = 1'b1;
-  assign words_is_small = 1'b1;
-  assign words_is_2 = 1'b0;
-  assign words_is_3 = 1'b0;
-  assign words_is_4 = 1'b0;
-  assign words_pending = 1'b0;
-  assign words_value = 3'd0;
+  assign orders_payload = {orders_payload_status, ends_packet, first_at[6:3], 1'b0, length_accepted,
+      words_last, 1'b0, orders_payload_map_bytes, orders_payload_items_bytes,
+      orders_payload_map_next, orders_payload_items_next, map_at[5:0], first_beat_of_map[2:0],
+      map_at[2:0], at_end, step_angular_x | step_angular_y, step_linear_y | step_linear_z,
+      step_linear_x_2 | step_linear_z | step_angular_y};
 endmodule
 
 // OrderQueue: A queue of two orders, so that `i.ready` is a register.
@@ -542,17 +507,20 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue (
   output wire        i_ready,
   output wire [3:0]  freed,
   input wire         o_ready,
+  // bits: step(2:0) blank(3) items_at(9:4) map_at(15:10) items_next(18:16) map_next(21:19)
+  // items_bytes(25:22) map_bytes(29:26) items(30) last(31) length_good(32) final(33) first(37:34)
+  // ends(38) status(41:39)
   input wire [41:0]  i_payload,
   input wire [3:0]   oldest,
   output wire        o_valid,
-  output wire [41:0] o_payload
+  output wire [41:0] o_payload  // bits as of i_payload
 );
 
   // Registers.
   reg o_valid_q = 1'b0;
-  reg [41:0] o_payload_q = 42'd0;
+  reg [41:0] o_payload_q = 42'd0;  // bits as of i_payload
   reg has_second = 1'b0;
-  reg [41:0] second = 42'd0;  // the order that came while o was waiting
+  reg [41:0] second = 42'd0;  // the order that came while o was waiting; bits as of i_payload
 
   // Combinational signals.
   wire [3:0] second_first;
@@ -597,6 +565,16 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_queue (
 endmodule
 
 // Mover: Read two words of the packet buffer per order, and write leaves from their lanes.
+//
+// One cycle reads the words and rotates their first bytes to lane 0; the next cycle writes the
+// leaves. So a leaf is valid 2 cycles after its order. Leaves of a state become valid in wire
+// order, each as soon as its register is free. A leaf whose register is full delays only later
+// leaves:
+//
+//     cycle           | 0        | 1             | 2
+//     orders          | a        | b             | c
+//     words           |          | of a          | of b
+//     leaves of a     |          | are written   | valid
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   input wire         rst,
   input wire         aclk,
@@ -608,8 +586,11 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   input wire         message_angular_z_ready,
   input wire         status_ready,
   output wire        orders_ready,
-  input wire [73:0]  beat,
+  input wire [73:0]  beat,  // bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
   input wire         orders_valid,
+  // bits: step(2:0) blank(3) items_at(9:4) map_at(15:10) items_next(18:16) map_next(21:19)
+  // items_bytes(25:22) map_bytes(29:26) items(30) last(31) length_good(32) final(33) first(37:34)
+  // ends(38) status(41:39)
   input wire [41:0]  orders_payload,
   output wire        message_linear_x_valid,
   output wire        message_linear_y_valid,
@@ -644,19 +625,18 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   reg status_valid_q = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_payload_q = 3'd0;
-  reg [63:0] message_linear_x_payload_q = 64'd0;
-  reg [63:0] message_linear_y_payload_q = 64'd0;
-  reg [63:0] message_linear_z_payload_q = 64'd0;
-  reg [63:0] message_angular_x_payload_q = 64'd0;
-  reg [63:0] message_angular_y_payload_q = 64'd0;
-  reg [63:0] message_angular_z_payload_q = 64'd0;
+  reg [63:0] payload_linear_x = 64'd0;
+  reg [63:0] payload_linear_y = 64'd0;
+  reg [63:0] payload_linear_z = 64'd0;
+  reg [63:0] payload_angular_x = 64'd0;
+  reg [63:0] payload_angular_y = 64'd0;
+  reg [63:0] payload_angular_z = 64'd0;
   reg length_good = 1'b0;
   reg last = 1'b0;
-  reg final_sig = 1'b0;
   reg [63:0] items_word = 64'd0;
-  reg [7:0] items_good = 8'd0;
+  reg [7:0] items_good = 8'd0;  // bit k: byte k of the word is good; else its value is written as 0
   reg [63:0] map_word = 64'd0;
-  reg [7:0] map_good = 8'd0;
+  reg [7:0] map_good = 8'd0;  // bit k: byte k of the word is good; else its value is written as 0
   reg begins_linear_x = 1'b0;
   reg [31:0] carried = 32'd0;
   reg begins_linear_x_2 = 1'b0;
@@ -701,13 +681,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire blocked_angular_z;
   wire go_angular_z;
   wire ends;
-  wire and_55;
-  wire and_63;
-  wire and_71;
-  wire and_79;
-  wire and_87;
-  wire or_116;
-  wire or_130;
+  wire next_order_is_slow;
+  wire order_stays_slow;
+  wire carried_part;
+  wire carried_part_2;
+  wire carried_part_3;
+  wire carried_part_4;
+  wire carried_part_5;
   wire [7:0] lane_0_items_data;
   wire [7:0] lane_0_map_data;
   wire [7:0] lane_1_items_data;
@@ -736,59 +716,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   wire [3:0] orders_payload_map_bytes;
   wire orders_payload_last;
   wire orders_payload_length_good;
-  wire orders_payload_final;
   wire orders_payload_ends;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire [2:0] orders_payload_status;
-
-  // Signals that no logic reads, for simulation.
-  wire take;
-  wire [2:0] lane_0_write_addr;
-  wire [7:0] lane_0_write_data;
-  wire lane_0_write_en;
-  wire [2:0] lane_0_items_addr;
-  wire [2:0] lane_0_map_addr;
-  wire [2:0] lane_1_write_addr;
-  wire [7:0] lane_1_write_data;
-  wire lane_1_write_en;
-  wire [2:0] lane_1_items_addr;
-  wire [2:0] lane_1_map_addr;
-  wire [2:0] lane_2_write_addr;
-  wire [7:0] lane_2_write_data;
-  wire lane_2_write_en;
-  wire [2:0] lane_2_items_addr;
-  wire [2:0] lane_2_map_addr;
-  wire [2:0] lane_3_write_addr;
-  wire [7:0] lane_3_write_data;
-  wire lane_3_write_en;
-  wire [2:0] lane_3_items_addr;
-  wire [2:0] lane_3_map_addr;
-  wire [2:0] lane_4_write_addr;
-  wire [7:0] lane_4_write_data;
-  wire lane_4_write_en;
-  wire [2:0] lane_4_items_addr;
-  wire [2:0] lane_4_map_addr;
-  wire [2:0] lane_5_write_addr;
-  wire [7:0] lane_5_write_data;
-  wire lane_5_write_en;
-  wire [2:0] lane_5_items_addr;
-  wire [2:0] lane_5_map_addr;
-  wire [2:0] lane_6_write_addr;
-  wire [7:0] lane_6_write_data;
-  wire lane_6_write_en;
-  wire [2:0] lane_6_items_addr;
-  wire [2:0] lane_6_map_addr;
-  wire [2:0] lane_7_write_addr;
-  wire [7:0] lane_7_write_data;
-  wire lane_7_write_en;
-  wire [2:0] lane_7_items_addr;
-  wire [2:0] lane_7_map_addr;
-  wire [63:0] payload_linear_x;
-  wire [63:0] payload_linear_y;
-  wire [63:0] payload_linear_z;
-  wire [63:0] payload_angular_x;
-  wire [63:0] payload_angular_y;
-  wire [63:0] payload_angular_z;
 
   reg [7:0] lane_0 [0:7];
   integer lane_0_at;
@@ -872,20 +802,20 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign blocked_angular_z = active_angular_z & message_angular_z_valid_q;
   assign go_angular_z = active_angular_z & ~blocked_angular_z & ~blocked_angular_y;
   assign ends = orders_valid & orders_payload_ends;
-  assign orders_ready = ~slow;
-  assign and_55 = orders_ready & begins_linear_x;
-  assign and_63 = orders_ready & begins_linear_x_2;
-  assign and_71 = orders_ready & begins_linear_y;
-  assign and_79 = orders_ready & begins_linear_z;
-  assign and_87 = orders_ready & begins_angular_x;
-  assign or_116 = (chosen_step_linear_x_2 & full_linear_x) | (chosen_step_linear_y &
+  assign next_order_is_slow = (chosen_step_linear_x_2 & full_linear_x) | (chosen_step_linear_y &
       full_linear_y) | (chosen_step_linear_z & full_linear_z) | (chosen_step_angular_x &
       full_angular_x) | (chosen_step_angular_y & full_angular_y) | (chosen_step_angular_y &
       full_angular_z) | (ends & status_full);
-  assign or_130 = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
+  assign order_stays_slow = (blocked_linear_x & ~message_linear_x_ready) | (blocked_linear_y &
       ~message_linear_y_ready) | (blocked_linear_z & ~message_linear_z_ready) | (blocked_angular_x &
       ~message_angular_x_ready) | (blocked_angular_y & ~message_angular_y_ready) |
       (blocked_angular_z & ~message_angular_z_ready) | (ends_now & status_full);
+  assign orders_ready = ~slow;
+  assign carried_part = orders_ready & begins_linear_x;
+  assign carried_part_2 = orders_ready & begins_linear_x_2;
+  assign carried_part_3 = orders_ready & begins_linear_y;
+  assign carried_part_4 = orders_ready & begins_linear_z;
+  assign carried_part_5 = orders_ready & begins_angular_x;
 
   always @(posedge aclk) begin
     if (beat_valid) begin
@@ -962,7 +892,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
       status_valid_q <= 1'b0;
       length_good <= 1'b0;
       last <= 1'b0;
-      final_sig <= 1'b0;
       begins_linear_x <= 1'b0;
       begins_linear_x_2 <= 1'b0;
       begins_linear_y <= 1'b0;
@@ -1025,7 +954,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
         end
         length_good <= orders_payload_length_good;
         last <= orders_payload_last;
-        final_sig <= orders_payload_final;
         begins_linear_x <= orders_valid & ~orders_payload_blank &
             (orders_payload_step == STEP_LINEAR_X);
         begins_linear_x_2 <= orders_valid & ~orders_payload_blank &
@@ -1070,9 +998,9 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
         active_angular_z <= active_angular_z & ~go_angular_z;
       end
       if (orders_ready) begin
-        slow <= or_116;
+        slow <= next_order_is_slow;
       end else begin
-        slow <= or_130;
+        slow <= order_stays_slow;
       end
     end
   end
@@ -1092,107 +1020,83 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
           orders_payload_map_bytes > 4'd3, orders_payload_map_bytes > 4'd2,
           orders_payload_map_bytes > 4'd1, orders_payload_map_bytes > 4'd0};
     end
-    if (and_55) begin
+    if (carried_part) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_55) begin
+    if (carried_part) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_55) begin
+    if (carried_part) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_55) begin
+    if (carried_part) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_63) begin
+    if (carried_part_2) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_63) begin
+    if (carried_part_2) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_63) begin
+    if (carried_part_2) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_63) begin
+    if (carried_part_2) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_71) begin
+    if (carried_part_3) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_71) begin
+    if (carried_part_3) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_71) begin
+    if (carried_part_3) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_71) begin
+    if (carried_part_3) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_79) begin
+    if (carried_part_4) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_79) begin
+    if (carried_part_4) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_79) begin
+    if (carried_part_4) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_79) begin
+    if (carried_part_4) begin
       carried[31:24] <= map_word[63:56];
     end
-    if (and_87) begin
+    if (carried_part_5) begin
       carried[7:0] <= map_word[39:32];
     end
-    if (and_87) begin
+    if (carried_part_5) begin
       carried[15:8] <= map_word[47:40];
     end
-    if (and_87) begin
+    if (carried_part_5) begin
       carried[23:16] <= map_word[55:48];
     end
-    if (and_87) begin
+    if (carried_part_5) begin
       carried[31:24] <= map_word[63:56];
     end
     if (go_linear_x) begin
-      if (map_good[3]) begin
-        message_linear_x_payload_q <= {map_word[31:0], carried};
-      end else begin
-        message_linear_x_payload_q <= 64'd0;
-      end
+      payload_linear_x <= map_good[3] ? {map_word[31:0], carried} : 64'd0;
     end
     if (go_linear_y) begin
-      if (map_good[3]) begin
-        message_linear_y_payload_q <= {map_word[31:0], carried};
-      end else begin
-        message_linear_y_payload_q <= 64'd0;
-      end
+      payload_linear_y <= map_good[3] ? {map_word[31:0], carried} : 64'd0;
     end
     if (go_linear_z) begin
-      if (map_good[3]) begin
-        message_linear_z_payload_q <= {map_word[31:0], carried};
-      end else begin
-        message_linear_z_payload_q <= 64'd0;
-      end
+      payload_linear_z <= map_good[3] ? {map_word[31:0], carried} : 64'd0;
     end
     if (go_angular_x) begin
-      if (map_good[3]) begin
-        message_angular_x_payload_q <= {map_word[31:0], carried};
-      end else begin
-        message_angular_x_payload_q <= 64'd0;
-      end
+      payload_angular_x <= map_good[3] ? {map_word[31:0], carried} : 64'd0;
     end
     if (go_angular_y) begin
-      if (items_good[3]) begin
-        message_angular_y_payload_q <= {items_word[31:0], carried};
-      end else begin
-        message_angular_y_payload_q <= 64'd0;
-      end
+      payload_angular_y <= items_good[3] ? {items_word[31:0], carried} : 64'd0;
     end
     if (go_angular_z) begin
-      if (map_good[3]) begin
-        message_angular_z_payload_q <= {map_word[31:0], items_word[63:32]};
-      end else begin
-        message_angular_z_payload_q <= 64'd0;
-      end
+      payload_angular_z <= map_good[3] ? {map_word[31:0], items_word[63:32]} : 64'd0;
     end
   end
 
@@ -1207,7 +1111,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign orders_payload_map_bytes = orders_payload[29:26];
   assign orders_payload_last = orders_payload[31];
   assign orders_payload_length_good = orders_payload[32];
-  assign orders_payload_final = orders_payload[33];
   assign orders_payload_ends = orders_payload[38];
   assign orders_payload_status = orders_payload[41:39];
 
@@ -1219,63 +1122,28 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_mover (
   assign message_angular_z_valid = message_angular_z_valid_q;
   assign status_valid = status_valid_q;
   assign status_payload = status_payload_q;
-  assign message_linear_x_payload = message_linear_x_payload_q;
-  assign message_linear_y_payload = message_linear_y_payload_q;
-  assign message_linear_z_payload = message_linear_z_payload_q;
-  assign message_angular_x_payload = message_angular_x_payload_q;
-  assign message_angular_y_payload = message_angular_y_payload_q;
-  assign message_angular_z_payload = message_angular_z_payload_q;
-
-  assign take = orders_ready;
-  assign lane_0_write_addr = beat[71:69];
-  assign lane_0_write_data = beat[7:0];
-  assign lane_0_write_en = beat[73];
-  assign lane_0_items_addr = orders_payload[9:7];
-  assign lane_0_map_addr = orders_payload[15:13];
-  assign lane_1_write_addr = beat[71:69];
-  assign lane_1_write_data = beat[15:8];
-  assign lane_1_write_en = beat[73];
-  assign lane_1_items_addr = orders_payload[9:7];
-  assign lane_1_map_addr = orders_payload[15:13];
-  assign lane_2_write_addr = beat[71:69];
-  assign lane_2_write_data = beat[23:16];
-  assign lane_2_write_en = beat[73];
-  assign lane_2_items_addr = orders_payload[9:7];
-  assign lane_2_map_addr = orders_payload[15:13];
-  assign lane_3_write_addr = beat[71:69];
-  assign lane_3_write_data = beat[31:24];
-  assign lane_3_write_en = beat[73];
-  assign lane_3_items_addr = orders_payload[9:7];
-  assign lane_3_map_addr = orders_payload[15:13];
-  assign lane_4_write_addr = beat[71:69];
-  assign lane_4_write_data = beat[39:32];
-  assign lane_4_write_en = beat[73];
-  assign lane_4_items_addr = orders_payload[9:7];
-  assign lane_4_map_addr = orders_payload[15:13];
-  assign lane_5_write_addr = beat[71:69];
-  assign lane_5_write_data = beat[47:40];
-  assign lane_5_write_en = beat[73];
-  assign lane_5_items_addr = orders_payload[9:7];
-  assign lane_5_map_addr = orders_payload[15:13];
-  assign lane_6_write_addr = beat[71:69];
-  assign lane_6_write_data = beat[55:48];
-  assign lane_6_write_en = beat[73];
-  assign lane_6_items_addr = orders_payload[9:7];
-  assign lane_6_map_addr = orders_payload[15:13];
-  assign lane_7_write_addr = beat[71:69];
-  assign lane_7_write_data = beat[63:56];
-  assign lane_7_write_en = beat[73];
-  assign lane_7_items_addr = orders_payload[9:7];
-  assign lane_7_map_addr = orders_payload[15:13];
-  assign payload_linear_x = message_linear_x_payload_q;
-  assign payload_linear_y = message_linear_y_payload_q;
-  assign payload_linear_z = message_linear_z_payload_q;
-  assign payload_angular_x = message_angular_x_payload_q;
-  assign payload_angular_y = message_angular_y_payload_q;
-  assign payload_angular_z = message_angular_z_payload_q;
+  assign message_linear_x_payload = payload_linear_x;
+  assign message_linear_y_payload = payload_linear_y;
+  assign message_linear_z_payload = payload_linear_z;
+  assign message_angular_x_payload = payload_angular_x;
+  assign message_angular_y_payload = payload_angular_y;
+  assign message_angular_z_payload = payload_angular_z;
 endmodule
 
 // Deserializer: Turn packets into messages.
+//
+// A packet advances one step of the plan per cycle, as soon as the bytes of the step have arrived.
+// Each step gives an order to a queue of two, and every leaf has one register. Leaves that are not
+// taken hold the packet only when the queue is full. Most leaves cost one cycle more if they are
+// still full when their next value comes.
+//
+// Leaves become valid in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat
+// of their step. All outputs are registers. One clock domain, `sync`; its reset discards all
+// packets and messages inside.
+//
+// Each packet ends in one transfer on `status`. After the first error in a packet, the remaining
+// scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of
+// the packet is dropped. The next packet is decoded normally.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
   input wire         rst,
   input wire         aclk,
@@ -1287,7 +1155,7 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
   input wire         message_angular_y_ready,
   input wire         message_angular_z_ready,
   input wire         status_ready,
-  input wire [68:0]  packets_payload,
+  input wire [68:0]  packets_payload,  // bits: data(63:0) count(67:64) last(68)
   output wire        packets_ready,
   output wire        message_linear_x_valid,
   output wire        message_linear_y_valid,
@@ -1320,12 +1188,6 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
   wire o_valid;
   wire [41:0] o_payload;
   wire orders_ready_25;
-
-  // Signals that no logic reads, for simulation.
-  wire stall_newest;
-  wire stall_newest_38;
-  wire zero_length;
-  wire zero_length_40;
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core_buffer buffer_sig (
     .aclk              (aclk),
@@ -1397,14 +1259,13 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core (
     .message_angular_y_payload (message_angular_y_payload),
     .message_angular_z_payload (message_angular_z_payload)
   );
-
-  assign stall_newest = 1'b0;
-  assign stall_newest_38 = 1'b0;
-  assign zero_length = 1'b0;
-  assign zero_length_40 = 1'b0;
 endmodule
 
 // Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
+//
+// The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
+// rising edge of `aclk`; one cycle of reset discards all packets and messages inside. A last beat
+// without any ones in ``tkeep`` adds no bytes, so it can end an empty packet.
 module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   input wire         aclk,
   input wire         aresetn,
@@ -1440,36 +1301,14 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   wire [2:0] status_payload;
   wire rst;
-  wire and_6;
-  wire and_9;
-  wire and_12;
-  wire and_22;
+  wire tkeep_begins_with_1;
+  wire tkeep_begins_with_2;
+  wire tkeep_begins_with_3;
+  wire tkeep_begins_with_4;
+  wire tkeep_begins_with_5;
+  wire tkeep_begins_with_6;
+  wire tkeep_begins_with_7;
   wire [3:0] packets_payload_count;
-
-  // Signals that no logic reads, for simulation.
-  wire packets_valid;
-  wire packets_ready;
-  wire status_valid;
-  wire status_ready;
-  wire [63:0] message_linear_x_payload;
-  wire message_linear_x_valid;
-  wire message_linear_x_ready;
-  wire [63:0] message_linear_y_payload;
-  wire message_linear_y_valid;
-  wire message_linear_y_ready;
-  wire [63:0] message_linear_z_payload;
-  wire message_linear_z_valid;
-  wire message_linear_z_ready;
-  wire [63:0] message_angular_x_payload;
-  wire message_angular_x_valid;
-  wire message_angular_x_ready;
-  wire [63:0] message_angular_y_payload;
-  wire message_angular_y_valid;
-  wire message_angular_y_ready;
-  wire [63:0] message_angular_z_payload;
-  wire message_angular_z_valid;
-  wire message_angular_z_ready;
-  wire [68:0] packets_payload;
 
   geometry_msgs_msg_Twist_cdr_8_deserializer_verilog_core core (
     .aclk                      (aclk),
@@ -1501,38 +1340,17 @@ module geometry_msgs_msg_Twist_cdr_8_deserializer_verilog (
   );
 
   assign rst = ~aresetn;
-  assign and_6 = (&s_axis_tkeep[2:0]) & ~s_axis_tkeep[3];
-  assign and_9 = (&s_axis_tkeep[4:0]) & ~s_axis_tkeep[5];
-  assign and_12 = (&s_axis_tkeep[6:0]) & ~s_axis_tkeep[7];
-  assign and_22 = (&s_axis_tkeep[5:0]) & ~s_axis_tkeep[6];
-  assign packets_payload_count = s_axis_tlast ? {&s_axis_tkeep, ((&s_axis_tkeep[3:0]) &
-      ~s_axis_tkeep[4]) | and_9 | and_22 | and_12, ((&s_axis_tkeep[1:0]) & ~s_axis_tkeep[2]) |
-      and_6 | and_22 | and_12, (s_axis_tkeep[0] & ~s_axis_tkeep[1]) | and_6 | and_9 | and_12} :
-      4'd8;
+  assign tkeep_begins_with_1 = s_axis_tkeep[0] & ~s_axis_tkeep[1];
+  assign tkeep_begins_with_2 = (&s_axis_tkeep[1:0]) & ~s_axis_tkeep[2];
+  assign tkeep_begins_with_3 = (&s_axis_tkeep[2:0]) & ~s_axis_tkeep[3];
+  assign tkeep_begins_with_4 = (&s_axis_tkeep[3:0]) & ~s_axis_tkeep[4];
+  assign tkeep_begins_with_5 = (&s_axis_tkeep[4:0]) & ~s_axis_tkeep[5];
+  assign tkeep_begins_with_6 = (&s_axis_tkeep[5:0]) & ~s_axis_tkeep[6];
+  assign tkeep_begins_with_7 = (&s_axis_tkeep[6:0]) & ~s_axis_tkeep[7];
+  assign packets_payload_count = s_axis_tlast ? {&s_axis_tkeep, tkeep_begins_with_4 |
+      tkeep_begins_with_5 | tkeep_begins_with_6 | tkeep_begins_with_7, tkeep_begins_with_2 |
+      tkeep_begins_with_3 | tkeep_begins_with_6 | tkeep_begins_with_7, tkeep_begins_with_1 |
+      tkeep_begins_with_3 | tkeep_begins_with_5 | tkeep_begins_with_7} : 4'd8;
 
   assign m_axis_status_tdata = {5'd0, status_payload};
-
-  assign packets_valid = s_axis_tvalid;
-  assign packets_ready = s_axis_tready;
-  assign status_valid = m_axis_status_tvalid;
-  assign status_ready = m_axis_status_tready;
-  assign message_linear_x_payload = linear_x_data;
-  assign message_linear_x_valid = linear_x_valid;
-  assign message_linear_x_ready = linear_x_ready;
-  assign message_linear_y_payload = linear_y_data;
-  assign message_linear_y_valid = linear_y_valid;
-  assign message_linear_y_ready = linear_y_ready;
-  assign message_linear_z_payload = linear_z_data;
-  assign message_linear_z_valid = linear_z_valid;
-  assign message_linear_z_ready = linear_z_ready;
-  assign message_angular_x_payload = angular_x_data;
-  assign message_angular_x_valid = angular_x_valid;
-  assign message_angular_x_ready = angular_x_ready;
-  assign message_angular_y_payload = angular_y_data;
-  assign message_angular_y_valid = angular_y_valid;
-  assign message_angular_y_ready = angular_y_ready;
-  assign message_angular_z_payload = angular_z_data;
-  assign message_angular_z_valid = angular_z_valid;
-  assign message_angular_z_ready = angular_z_ready;
-  assign packets_payload = {s_axis_tlast, packets_payload_count, s_axis_tdata};
 endmodule

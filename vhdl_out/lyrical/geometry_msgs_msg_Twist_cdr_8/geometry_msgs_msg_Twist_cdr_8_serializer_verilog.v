@@ -2,7 +2,16 @@
 // lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 // definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 // What each port means: manifest.json.
-// Steps, as `firm-hdl plan --program` prints and explains them:
+// Steps, as `firm-hdl plan --program` prints them.
+// One line a step: its number and name, what it takes, and where it leads. A step is one cycle.
+// "map": bytes at fixed places, at most two bus words. "items": a bus word of a string or an
+// array, which is a run of them. "rest": the last items of a run, which the next step takes
+// before its map; "rest x 8": of 8 bytes each. "lanes": the bytes of the bus, from 0 on. "unit
+// 4": bytes start and end at multiples of 4. "body": the step after a length that more than a
+// rest follows. "level 0": the outermost sequence of elements; "while level 0": while it has
+// elements left. "to 2 (+8)": the last byte of step 2 is 8 bytes after that of this step; with
+// "align 4 | 3", then down to a multiple of 4, and 3 more: from byte 21, "+6, align 4 | 3" leads
+// to byte 27. "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
 // serializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4, at most 3 beats a
 //       state
 //   0 linear_x: map of 8; begins linear.x; map = 00 01 00 00 linear.x:0..3; to 1
@@ -14,6 +23,17 @@
 //       angular.z:0..3; map = angular.z:4..7; to end
 
 // Collector: Take the leaves of each state of a program, and put them into two words.
+//
+// Leaves are taken in wire order, each as soon as it is offered. A length is decoded in the cycle
+// before it is taken, so it is taken one cycle after it is offered at the earliest. Latency 1
+// cycle from the last leaf of a state to the state's words. Throughput one state per cycle:
+//
+//     cycle              | 0        | 1         | 2
+//     length.valid       | 1        | 1         |
+//     known              |          | 1         |
+//     length.ready       |          | 1         |
+//     complete           |          | 1         |
+//     words.valid        |          |           | 1
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   input wire          rst,
   input wire          aclk,
@@ -36,8 +56,10 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   output wire         message_angular_x_ready,
   output wire         message_angular_y_ready,
   output wire         message_angular_z_ready,
-  output wire [127:0] port_537_0,
-  output wire [32:0]  port_541_0,
+  output wire [127:0] words_payload_0,  // bits: items(63:0) map(127:64)
+  // bits: items_bytes(3:0) map_bytes(7:4) two_word_map(8) to_map(13:9) map_mask(16:14)
+  // to_end(22:17) end_mask(25:23) max_beats(28:26) last(29) empty(30) waits(31) error(32)
+  output wire [32:0]  words_payload_128,
   output wire         status_valid,
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   output wire [2:0]   status_payload,
@@ -47,7 +69,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   localparam [2:0] STATUS_OK = 3'd0;
 
   // Registers.
-  reg [32:0] port_541_0_q = 33'd0;
+  reg [32:0] words_payload_128_q = 33'd0;  // bits as of words_payload_128_q
   reg status_valid_q = 1'b0;
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   reg [2:0] status_payload_q = 3'd0;
@@ -61,8 +83,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   reg [31:0] map_0 = 32'd0;
   reg [31:0] map_4 = 32'd0;
   reg begun = 1'b0;
-  reg words_last = 1'b1;
-  reg words_less = 1'b0;
+  reg words_last = 1'b1;  // one is left
   reg step_linear_x = 1'b1;  // step 0: map of 8; begins linear.x
   reg step_linear_x_2 = 1'b0;  // step 1: map of 8; linear.x; begins linear.y
   reg step_linear_y = 1'b0;  // step 2: map of 8; linear.y; begins linear.z
@@ -89,49 +110,21 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   wire left_angular_z;
   wire lacks_angular_z;
   wire go_angular_z;
+  wire lacks_any;
   wire free;
-  wire or_60;
   wire complete;
+  wire serves_0;
+  wire items_0_writes;
+  wire items_4_writes;
+  wire map_0_writes_part;
+  wire map_0_writes;
   wire [4:0] map_size;
   wire begins;
   wire [3:0] to_map_0;
-  wire to_exit;
-  wire served_0_next;
-  wire or_120;
-  wire [31:0] or_133;
-  wire [31:0] map_0_next;
-  wire [31:0] or_152;
-  wire [5:0] add_159;
+  wire [7:0] most_bytes;
+  wire moves_on;
   wire [5:0] to_end;
   wire [2:0] end_mask;
-
-  // Signals that no logic reads, for simulation.
-  wire length_zero;
-  wire length_skips;
-  wire length_over;
-  wire [160:0] words_payload;
-  wire [4:0] to_map;
-  wire length_rest;
-  wire length_at_most_one_pass;
-  wire words_loads;
-  wire done;
-  wire ends;
-  wire go_linear_x;
-  wire go_linear_y;
-  wire go_linear_z;
-  wire go_angular_x;
-  wire go_angular_y;
-  wire [3:0] items_size;
-  wire to_body;
-  wire words_down;
-  wire words_keeps;
-  wire words_is_small;
-  wire words_is_2;
-  wire words_is_3;
-  wire words_is_4;
-  wire [2:0] found;  // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  wire words_pending;
-  wire [2:0] words_value;
 
   assign left_linear_x = step_linear_x_2 & ~served_0;
   assign lacks_linear_x = left_linear_x & ~message_linear_x_valid;
@@ -151,29 +144,24 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
   assign left_angular_z = step_angular_y & ~served_1;
   assign lacks_angular_z = left_angular_z & ~message_angular_z_valid;
   assign go_angular_z = left_angular_z & message_angular_z_valid & free & ~lacks_angular_y;
-  assign free = ~words_valid_q | words_ready;
-  assign or_60 = lacks_linear_x | lacks_linear_y | lacks_linear_z | lacks_angular_x |
+  assign lacks_any = lacks_linear_x | lacks_linear_y | lacks_linear_z | lacks_angular_x |
       lacks_angular_y | lacks_angular_z | (step_linear_x & ~message_linear_x_valid) |
       (step_linear_x_2 & ~message_linear_y_valid) | (step_linear_y & ~message_linear_z_valid) |
       (step_linear_z & ~message_angular_x_valid) | (step_angular_x & ~message_angular_y_valid);
-  assign complete = free & ~or_60 & (~step_angular_y | ~status_valid_q | status_ready);
+  assign free = ~words_valid_q | words_ready;
+  assign complete = free & ~lacks_any & (~step_angular_y | ~status_valid_q | status_ready);
+  assign serves_0 = message_linear_x_ready | message_linear_y_ready | message_linear_z_ready |
+      message_angular_x_ready | message_angular_y_ready;
+  assign items_0_writes = free & ~(step_angular_y & served_0);
+  assign items_4_writes = free & ~(step_angular_y & served_1);
+  assign map_0_writes_part = ((step_linear_x_2 | step_linear_y | step_linear_z | step_angular_x) &
+      served_0) | (step_angular_y & served_1);
+  assign map_0_writes = free & ~map_0_writes_part;
   assign map_size = {1'd0, map_bytes} + {1'd0, two_word_map ? 4'd8 : 4'd0};
   assign begins = begun | (|items_bytes) | (|map_bytes);
   assign to_map_0 = two_word_map ? 4'd0 : items_bytes;
-  assign to_exit = complete & ~step_angular_y;
-  assign served_0_next = (served_0 | message_linear_x_ready | message_linear_y_ready |
-      message_linear_z_ready | message_angular_x_ready | message_angular_y_ready) & ~complete;
-  assign or_120 = ((step_linear_x_2 | step_linear_y | step_linear_z | step_angular_x) & served_0) |
-      (step_angular_y & served_1);
-  assign or_133 = (step_linear_x ? 32'd256 : 32'd0) | (step_linear_x_2 ?
-      message_linear_x_payload[63:32] : 32'd0) | (step_linear_y ? message_linear_y_payload[63:32] :
-      32'd0) | (step_linear_z ? message_linear_z_payload[63:32] : 32'd0);
-  assign map_0_next = or_133 | (step_angular_x ? message_angular_x_payload[63:32] : 32'd0) |
-      (step_angular_y ? message_angular_z_payload[63:32] : 32'd0);
-  assign or_152 = (step_linear_x ? message_linear_x_payload[31:0] : 32'd0) | (step_linear_x_2 ?
-      message_linear_y_payload[31:0] : 32'd0) | (step_linear_y ? message_linear_z_payload[31:0] :
-      32'd0) | (step_linear_z ? message_angular_x_payload[31:0] : 32'd0);
-  assign add_159 = {1'd0, 1'b0, to_map_0} + to_end + 6'd7;
+  assign most_bytes = {1'd0, {2'd0, 1'b0, to_map_0} + {1'd0, to_end}} + 8'd7;
+  assign moves_on = complete & ~step_angular_y;
 
   assign to_end = step_angular_y ? (begins ? ({1'd0, map_size} + 6'd7) : 6'd8) :
       {1'b0, map_size};
@@ -183,7 +171,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
 
   always @(posedge aclk) begin
     if (rst) begin
-      port_541_0_q <= 33'd0;
+      words_payload_128_q <= 33'd0;
       served_0 <= 1'b0;
       served_1 <= 1'b0;
       error_sig <= 3'd0;
@@ -192,7 +180,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       begun <= 1'b0;
       words_valid_q <= 1'b0;
       words_last <= 1'b1;
-      words_less <= 1'b0;
       step_linear_x <= 1'b1;
       step_linear_x_2 <= 1'b0;
       step_linear_y <= 1'b0;
@@ -206,17 +193,17 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
       has_nul <= 1'b0;
     end else begin
       if (free) begin
-        port_541_0_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
-        port_541_0_q[28:26] <= add_159[5:3];
-        port_541_0_q[25:14] <= {end_mask, to_end, 3'd0};
-        port_541_0_q[30] <= ~begins;
+        words_payload_128_q[13:0] <= {1'b0, to_map_0, two_word_map, map_bytes, items_bytes};
+        words_payload_128_q[28:26] <= most_bytes[5:3];
+        words_payload_128_q[25:14] <= {end_mask, to_end, 3'd0};
+        words_payload_128_q[30] <= ~begins;
         words_valid_q <= complete;
       end
       if (free) begin
-        port_541_0_q[29] <= step_angular_y;
-        port_541_0_q[32:31] <= {error_sig != STATUS_OK, 1'b0};
+        words_payload_128_q[29] <= step_angular_y;
+        words_payload_128_q[32:31] <= {error_sig != STATUS_OK, 1'b0};
       end
-      served_0 <= served_0_next;
+      served_0 <= (served_0 | serves_0) & ~complete;
       served_1 <= (served_1 | go_angular_z) & ~complete;
       if (complete && step_angular_y) begin
         error_sig <= STATUS_OK;
@@ -258,79 +245,69 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector (
         end
       end
       words_last <= words_last;
-      words_less <= words_less;
     end
   end
 
   always @(posedge aclk) begin
-    if (free && (!step_angular_y || !served_0)) begin
+    if (items_0_writes) begin
       items_0 <= message_angular_y_payload[63:32];
     end
-    if (free && (!step_angular_y || !served_1)) begin
+    if (items_4_writes) begin
       items_4 <= message_angular_z_payload[31:0];
     end
-    if (free && !or_120) begin
-      map_0 <= map_0_next;
+    if (map_0_writes) begin
+      map_0 <= (step_linear_x ? 32'd256 : 32'd0) | (step_linear_x_2 ?
+          message_linear_x_payload[63:32] : 32'd0) | (step_linear_y ?
+          message_linear_y_payload[63:32] : 32'd0) | (step_linear_z ?
+          message_linear_z_payload[63:32] : 32'd0) | (step_angular_x ?
+          message_angular_x_payload[63:32] : 32'd0) | (step_angular_y ?
+          message_angular_z_payload[63:32] : 32'd0);
     end
     if (free) begin
-      map_4 <= or_152 | (step_angular_x ? message_angular_y_payload[31:0] : 32'd0);
+      map_4 <= (step_linear_x ? message_linear_x_payload[31:0] : 32'd0) | (step_linear_x_2 ?
+          message_linear_y_payload[31:0] : 32'd0) | (step_linear_y ?
+          message_linear_z_payload[31:0] : 32'd0) | (step_linear_z ?
+          message_angular_x_payload[31:0] : 32'd0) | (step_angular_x ?
+          message_angular_y_payload[31:0] : 32'd0);
     end
   end
 
-  assign port_537_0 = {map_4, map_0, items_4, items_0};
+  assign words_payload_0 = {map_4, map_0, items_4, items_0};
   assign message_angular_z_ready = go_angular_z;
 
-  assign port_541_0 = port_541_0_q;
+  assign words_payload_128 = words_payload_128_q;
   assign status_valid = status_valid_q;
   assign status_payload = status_payload_q;
   assign words_valid = words_valid_q;
-
-  assign length_zero = 1'b0;
-  assign length_skips = 1'b0;
-  assign length_over = 1'b0;
-  assign words_payload = {port_541_0_q, map_4, map_0, items_4, items_0};
-  assign to_map = {1'b0, to_map_0};
-  assign length_rest = 1'b0;
-  assign length_at_most_one_pass = 1'b0;
-  assign words_loads = 1'b0;
-  assign done = 1'b1;
-  assign ends = step_angular_y;
-  assign go_linear_x = message_linear_x_ready;
-  assign go_linear_y = message_linear_y_ready;
-  assign go_linear_z = message_linear_z_ready;
-  assign go_angular_x = message_angular_x_ready;
-  assign go_angular_y = message_angular_y_ready;
-  assign items_size = items_bytes;
-  assign to_body = 1'b0;
-  assign words_down = 1'b0;
-  assign words_keeps = 1'b1;
-  assign words_is_small = 1'b1;
-  assign words_is_2 = 1'b0;
-  assign words_is_3 = 1'b0;
-  assign words_is_4 = 1'b0;
-  assign found = error_sig;
-  assign words_pending = 1'b0;
-  assign words_value = 3'd0;
 endmodule
 
 // Packer: Write words to a ring of beats, and send the beats that are complete.
+//
+// Throughput two words in and one beat out per cycle; latency 3 cycles:
+//
+//     cycle          | 0                  | 1            | 2          | 3
+//     words          | valid, ready       |              |            |
+//     they are       | placed and rotated | written      |            |
+//     beat           |                    | complete     | read       | packets.valid
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   input wire         rst,
   input wire         aclk,
   input wire         packets_ready,
-  input wire [127:0] words_payload_0,
+  input wire [127:0] words_payload_0,  // bits: items(63:0) map(127:64)
+  // bits: items_bytes(3:0) map_bytes(7:4) two_word_map(8) to_map(13:9) map_mask(16:14)
+  // to_end(22:17) end_mask(25:23) max_beats(28:26) last(29) empty(30) waits(31) error(32)
   input wire [32:0]  words_payload_128,
   input wire         words_valid,
   output wire        words_ready,
   output wire        packets_valid,
-  output wire [68:0] packets_payload,
+  output wire [68:0] packets_payload,  // bits: data(63:0) count(67:64) last(68)
   output wire        error_sig
 );
 
   // Registers.
-  reg words_ready_q = 1'b1;
+  reg ready = 1'b1;
   reg packets_valid_q = 1'b0;
-  reg [68:0] packets_payload_q = 69'd0;
+  reg [68:0] payload = 69'd0;  // bits: data(63:0) count(67:64) last(68)
   reg error_sig_q = 1'b0;
   reg writes = 1'b0;
   reg [63:0] items_0_write_data = 64'd0;
@@ -355,16 +332,26 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
 
   // Combinational signals.
   wire takes;
+  wire [3:0] map_beat;
   wire [6:0] total;
-  wire [6:0] total_6;
+  wire [6:0] total_8;
   wire [6:0] base;
   wire [6:0] end_sig;
-  wire [3:0] add_13;
   wire [6:0] map_end;
+  wire [6:0] items_at;
   wire [3:0] newest;
   wire [3:0] room;
   wire [2:0] ends_write_addr;
   wire ends_write_en;
+  wire commits;
+  wire frees_slot_0;
+  wire frees_slot_1;
+  wire frees_slot_2;
+  wire frees_slot_3;
+  wire frees_slot_4;
+  wire frees_slot_5;
+  wire frees_slot_6;
+  wire frees_slot_7;
   wire items_used_0;
   wire items_0_written;
   wire map_used_0;
@@ -373,15 +360,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire map_4_written;
   wire reads;
   wire is_last;
-  wire and_43;
-  wire and_46;
-  wire and_50;
-  wire and_54;
-  wire and_58;
-  wire and_62;
-  wire and_66;
-  wire and_70;
-  wire and_74;
   wire [4:0] ends_read_data;
   wire [63:0] items_0_read_data;
   wire [31:0] map_0_read_data;
@@ -402,32 +380,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   wire words_payload_error;
   wire [3:0] ends_read_data_count;
   wire ends_read_data_error;
-
-  // Signals that no logic reads, for simulation.
-  wire [160:0] words_payload;
-  wire [6:0] map_at;
-  wire ready;
-  wire [2:0] items_index_0;
-  wire [2:0] items_slot_0;
-  wire [2:0] items_0_write_addr;
-  wire [63:0] items_placed;
-  wire items_0_write_en;
-  wire [2:0] items_0_read_addr;
-  wire [2:0] map_index_0;
-  wire [2:0] map_slot_0;
-  wire [2:0] map_0_write_addr;
-  wire [31:0] map_0_write_data;
-  wire map_0_write_en;
-  wire [2:0] map_0_read_addr;
-  wire [2:0] map_index_4;
-  wire [2:0] map_slot_4;
-  wire [2:0] map_4_write_addr;
-  wire [31:0] map_4_write_data;
-  wire map_4_write_en;
-  wire [2:0] map_4_read_addr;
-  wire [2:0] ends_read_addr;
-  wire [68:0] payload;
-  wire [4:0] ends_write_data;
 
   reg [4:0] ends [0:7];
   integer ends_at;
@@ -457,18 +409,28 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       map_4[map_4_at] = 32'd0;
   end
 
-  assign takes = words_valid & words_ready_q;
+  assign takes = words_valid & ready;
+  assign map_beat = base[6:3] + {3'd0, words_payload_two_word_map};
   assign total = at + {2'd0, words_payload_to_map};
-  assign total_6 = base + {1'd0, words_payload_to_end};
+  assign total_8 = base + {1'd0, words_payload_to_end};
   assign base = (total & ~{4'd0, words_payload_map_mask}) | {4'd0, words_payload_map_mask & 3'd4};
-  assign end_sig = (total_6 & ~{4'd0, words_payload_end_mask}) | {4'd0, words_payload_end_mask &
+  assign end_sig = (total_8 & ~{4'd0, words_payload_end_mask}) | {4'd0, words_payload_end_mask &
       (words_payload_last ? 3'd0 : 3'd4)};
-  assign add_13 = base[6:3] + {3'd0, words_payload_two_word_map};
-  assign map_end = {add_13, base[2:0]} + {3'd0, words_payload_map_bytes};
+  assign map_end = {map_beat, base[2:0]} + {3'd0, words_payload_map_bytes};
+  assign items_at = words_payload_two_word_map ? base : at;
   assign newest = at[6:3] + {1'd0, takes ? words_payload_max_beats : 3'd0};
   assign room = bound - newest;
   assign ends_write_addr = complete_next[2:0] - 3'd1;
   assign ends_write_en = writes & ends_packet;
+  assign commits = writes & ~waits;
+  assign frees_slot_0 = reads & (first[2:0] == 3'd0);
+  assign frees_slot_1 = reads & (first[2:0] == 3'd1);
+  assign frees_slot_2 = reads & (first[2:0] == 3'd2);
+  assign frees_slot_3 = reads & (first[2:0] == 3'd3);
+  assign frees_slot_4 = reads & (first[2:0] == 3'd4);
+  assign frees_slot_5 = reads & (first[2:0] == 3'd5);
+  assign frees_slot_6 = reads & (first[2:0] == 3'd6);
+  assign frees_slot_7 = reads & (first[2:0] == 3'd7);
   assign items_used_0 = writes & (items_size > 4'd0);
   assign items_0_written = items_0_has[first[2:0]];
   assign map_used_0 = writes & (map_size > 4'd0);
@@ -477,15 +439,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign map_4_written = map_4_has[first[2:0]];
   assign reads = (complete != first) & (~packets_valid_q | packets_ready);
   assign is_last = last[first[2:0]];
-  assign and_43 = writes & ~waits;
-  assign and_46 = reads & (first[2:0] == 3'd0);
-  assign and_50 = reads & (first[2:0] == 3'd1);
-  assign and_54 = reads & (first[2:0] == 3'd2);
-  assign and_58 = reads & (first[2:0] == 3'd3);
-  assign and_62 = reads & (first[2:0] == 3'd4);
-  assign and_66 = reads & (first[2:0] == 3'd5);
-  assign and_70 = reads & (first[2:0] == 3'd6);
-  assign and_74 = reads & (first[2:0] == 3'd7);
 
   always @(posedge aclk) begin
     if (ends_write_en) begin
@@ -528,7 +481,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       failed <= 1'b0;
       waits <= 1'b0;
       last_bytes <= 4'd0;
-      words_ready_q <= 1'b1;
+      ready <= 1'b1;
       bound <= 4'd5;
       complete <= 4'd0;
       last <= 8'd0;
@@ -540,13 +493,9 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
     end else begin
       writes <= takes;
       if (takes) begin
-        if (words_payload_two_word_map) begin
-          items_start <= base;
-        end else begin
-          items_start <= at;
-        end
+        items_start <= items_at;
         items_size <= words_payload_items_bytes;
-        map_start <= {add_13, base[2:0]};
+        map_start <= {map_beat, base[2:0]};
         map_size <= words_payload_map_bytes;
         at <= end_sig;
         complete_next <= end_sig[6:3];
@@ -559,12 +508,12 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           last_bytes <= {1'd0, map_end[2:0] - 3'd1} + 4'd1;
         end
       end
-      words_ready_q <= ~room[3];
+      ready <= ~room[3];
       if (reads) begin
         bound <= bound + 4'd1;
         first <= first + 4'd1;
       end
-      if (and_43) begin
+      if (commits) begin
         complete <= complete_next;
         if (ends_packet) begin
           case (ends_write_addr)
@@ -593,122 +542,122 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
           default: ;
         endcase
       end
-      if (and_46) begin
+      if (frees_slot_0) begin
         items_0_has[0] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd0)) begin
         items_0_has[0] <= 1'b1;
       end
-      if (and_50) begin
+      if (frees_slot_1) begin
         items_0_has[1] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd1)) begin
         items_0_has[1] <= 1'b1;
       end
-      if (and_54) begin
+      if (frees_slot_2) begin
         items_0_has[2] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd2)) begin
         items_0_has[2] <= 1'b1;
       end
-      if (and_58) begin
+      if (frees_slot_3) begin
         items_0_has[3] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd3)) begin
         items_0_has[3] <= 1'b1;
       end
-      if (and_62) begin
+      if (frees_slot_4) begin
         items_0_has[4] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd4)) begin
         items_0_has[4] <= 1'b1;
       end
-      if (and_66) begin
+      if (frees_slot_5) begin
         items_0_has[5] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd5)) begin
         items_0_has[5] <= 1'b1;
       end
-      if (and_70) begin
+      if (frees_slot_6) begin
         items_0_has[6] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd6)) begin
         items_0_has[6] <= 1'b1;
       end
-      if (and_74) begin
+      if (frees_slot_7) begin
         items_0_has[7] <= 1'b0;
       end else if (items_used_0 && (items_start[5:3] == 3'd7)) begin
         items_0_has[7] <= 1'b1;
       end
-      if (and_46) begin
+      if (frees_slot_0) begin
         map_0_has[0] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd0)) begin
         map_0_has[0] <= 1'b1;
       end
-      if (and_50) begin
+      if (frees_slot_1) begin
         map_0_has[1] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd1)) begin
         map_0_has[1] <= 1'b1;
       end
-      if (and_54) begin
+      if (frees_slot_2) begin
         map_0_has[2] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd2)) begin
         map_0_has[2] <= 1'b1;
       end
-      if (and_58) begin
+      if (frees_slot_3) begin
         map_0_has[3] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd3)) begin
         map_0_has[3] <= 1'b1;
       end
-      if (and_62) begin
+      if (frees_slot_4) begin
         map_0_has[4] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd4)) begin
         map_0_has[4] <= 1'b1;
       end
-      if (and_66) begin
+      if (frees_slot_5) begin
         map_0_has[5] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd5)) begin
         map_0_has[5] <= 1'b1;
       end
-      if (and_70) begin
+      if (frees_slot_6) begin
         map_0_has[6] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd6)) begin
         map_0_has[6] <= 1'b1;
       end
-      if (and_74) begin
+      if (frees_slot_7) begin
         map_0_has[7] <= 1'b0;
       end else if (map_used_0 && (map_start[5:3] == 3'd7)) begin
         map_0_has[7] <= 1'b1;
       end
-      if (and_46) begin
+      if (frees_slot_0) begin
         map_4_has[0] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd0)) begin
         map_4_has[0] <= 1'b1;
       end
-      if (and_50) begin
+      if (frees_slot_1) begin
         map_4_has[1] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd1)) begin
         map_4_has[1] <= 1'b1;
       end
-      if (and_54) begin
+      if (frees_slot_2) begin
         map_4_has[2] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd2)) begin
         map_4_has[2] <= 1'b1;
       end
-      if (and_58) begin
+      if (frees_slot_3) begin
         map_4_has[3] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd3)) begin
         map_4_has[3] <= 1'b1;
       end
-      if (and_62) begin
+      if (frees_slot_4) begin
         map_4_has[4] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd4)) begin
         map_4_has[4] <= 1'b1;
       end
-      if (and_66) begin
+      if (frees_slot_5) begin
         map_4_has[5] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd5)) begin
         map_4_has[5] <= 1'b1;
       end
-      if (and_70) begin
+      if (frees_slot_6) begin
         map_4_has[6] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd6)) begin
         map_4_has[6] <= 1'b1;
       end
-      if (and_74) begin
+      if (frees_slot_7) begin
         map_4_has[7] <= 1'b0;
       end else if (map_used_4 && (map_start[5:3] == 3'd7)) begin
         map_4_has[7] <= 1'b1;
@@ -728,14 +677,14 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
       map_placed <= words_payload_map;
     end
     if (reads) begin
-      packets_payload_q[63:0] <= {(items_0_written ? items_0_read_data[63:32] : 32'd0) |
-          (map_4_written ? map_4_read_data : 32'd0), (items_0_written ? items_0_read_data[31:0] :
-          32'd0) | (map_0_written ? map_0_read_data : 32'd0)};
-      packets_payload_q[68] <= is_last;
+      payload[63:0] <= {(items_0_written ? items_0_read_data[63:32] : 32'd0) | (map_4_written ?
+          map_4_read_data : 32'd0), (items_0_written ? items_0_read_data[31:0] : 32'd0) |
+          (map_0_written ? map_0_read_data : 32'd0)};
+      payload[68] <= is_last;
       if (is_last) begin
-        packets_payload_q[67:64] <= ends_read_data_count;
+        payload[67:64] <= ends_read_data_count;
       end else begin
-        packets_payload_q[67:64] <= 4'd8;
+        payload[67:64] <= 4'd8;
       end
       error_sig_q <= is_last & ends_read_data_error;
     end
@@ -758,38 +707,26 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_packer (
   assign ends_read_data_count = ends_read_data[3:0];
   assign ends_read_data_error = ends_read_data[4];
 
-  assign words_ready = words_ready_q;
+  assign words_ready = ready;
   assign packets_valid = packets_valid_q;
-  assign packets_payload = packets_payload_q;
+  assign packets_payload = payload;
   assign error_sig = error_sig_q;
-
-  assign words_payload = {words_payload_128, words_payload_0};
-  assign map_at = {add_13, base[2:0]};
-  assign ready = words_ready_q;
-  assign items_index_0 = 3'd0;
-  assign items_slot_0 = items_start[5:3];
-  assign items_0_write_addr = items_start[5:3];
-  assign items_placed = items_0_write_data;
-  assign items_0_write_en = items_used_0;
-  assign items_0_read_addr = first[2:0];
-  assign map_index_0 = 3'd0;
-  assign map_slot_0 = map_start[5:3];
-  assign map_0_write_addr = map_start[5:3];
-  assign map_0_write_data = map_placed[31:0];
-  assign map_0_write_en = map_used_0;
-  assign map_0_read_addr = first[2:0];
-  assign map_index_4 = 3'd4;
-  assign map_slot_4 = map_start[5:3];
-  assign map_4_write_addr = map_start[5:3];
-  assign map_4_write_data = map_placed[63:32];
-  assign map_4_write_en = map_used_4;
-  assign map_4_read_addr = first[2:0];
-  assign ends_read_addr = first[2:0];
-  assign payload = packets_payload_q;
-  assign ends_write_data = {failed, last_bytes};
 endmodule
 
 // Serializer: Turn messages into packets.
+//
+// Leaves are taken in wire order, several in one cycle if they are valid. No leaf waits for a
+// later one. A length is taken one cycle after it is offered at the earliest. The serializer adds
+// the lengths on the wire, padding and terminators. A beat is valid `LATENCY_CYCLES["serializer"]`
+// cycles after the last leaf of the step that fills it. The `ready` of a leaf depends
+// combinationally on its own `valid` and on that of the earlier leaves of the same step; all other
+// outputs are registers. One clock domain, `sync`; its reset discards all messages and packets
+// inside.
+//
+// Each packet ends in one transfer on `status`. A length over its bound is written unchanged, and
+// as many items are taken as it says. The packet is marked with an error, so that the receiver can
+// drop it. `length` decides how many items are taken; an `items.last` that disagrees marks the
+// packet with an error.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
   input wire         rst,
   input wire         aclk,
@@ -817,7 +754,7 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
   // 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   output wire [2:0]  status_payload,
   output wire        packets_valid,
-  output wire [68:0] packets_payload,
+  output wire [68:0] packets_payload,  // bits: data(63:0) count(67:64) last(68)
   output wire        packet_error
 );
 
@@ -826,11 +763,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
   wire [32:0] words_payload_128;
   wire words_valid;
   wire words_ready;
-
-  // Signals that no logic reads, for simulation.
-  wire [160:0] words_payload;
-  wire [160:0] words_payload_1;
-  wire error_sig;
 
   geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core_collector collector (
     .aclk                      (aclk),
@@ -854,8 +786,8 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
     .message_angular_x_ready   (message_angular_x_ready),
     .message_angular_y_ready   (message_angular_y_ready),
     .message_angular_z_ready   (message_angular_z_ready),
-    .port_537_0                (words_payload_0),
-    .port_541_0                (words_payload_128),
+    .words_payload_0           (words_payload_0),
+    .words_payload_128         (words_payload_128),
     .status_valid              (status_valid),
     .status_payload            (status_payload),
     .words_valid               (words_valid),
@@ -874,13 +806,13 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core (
     .packets_payload   (packets_payload),
     .error_sig         (packet_error)
   );
-
-  assign words_payload = {words_payload_128, words_payload_0};
-  assign words_payload_1 = {words_payload_128, words_payload_0};
-  assign error_sig = packet_error;
 endmodule
 
 // Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
+//
+// The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
+// rising edge of `aclk`; one cycle of reset discards all packets and messages inside. A last beat
+// without any ones in ``tkeep`` adds no bytes, so it can end an empty packet.
 module geometry_msgs_msg_Twist_cdr_8_serializer_verilog (
   input wire         aclk,
   input wire         aresetn,
@@ -919,31 +851,6 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog (
   wire [68:0] packets_payload;
   wire rst;
   wire [3:0] packets_payload_count;
-
-  // Signals that no logic reads, for simulation.
-  wire packet_error;
-  wire packets_valid;
-  wire packets_ready;
-  wire status_valid;
-  wire status_ready;
-  wire [63:0] message_linear_x_payload;
-  wire message_linear_x_valid;
-  wire message_linear_x_ready;
-  wire [63:0] message_linear_y_payload;
-  wire message_linear_y_valid;
-  wire message_linear_y_ready;
-  wire [63:0] message_linear_z_payload;
-  wire message_linear_z_valid;
-  wire message_linear_z_ready;
-  wire [63:0] message_angular_x_payload;
-  wire message_angular_x_valid;
-  wire message_angular_x_ready;
-  wire [63:0] message_angular_y_payload;
-  wire message_angular_y_valid;
-  wire message_angular_y_ready;
-  wire [63:0] message_angular_z_payload;
-  wire message_angular_z_valid;
-  wire message_angular_z_ready;
 
   geometry_msgs_msg_Twist_cdr_8_serializer_verilog_core core (
     .aclk                      (aclk),
@@ -984,28 +891,4 @@ module geometry_msgs_msg_Twist_cdr_8_serializer_verilog (
   assign m_axis_tlast = packets_payload[68];
   assign m_axis_status_tdata = {5'd0, status_payload};
   assign packets_payload_count = packets_payload[67:64];
-
-  assign packet_error = m_axis_tuser;
-  assign packets_valid = m_axis_tvalid;
-  assign packets_ready = m_axis_tready;
-  assign status_valid = m_axis_status_tvalid;
-  assign status_ready = m_axis_status_tready;
-  assign message_linear_x_payload = linear_x_data;
-  assign message_linear_x_valid = linear_x_valid;
-  assign message_linear_x_ready = linear_x_ready;
-  assign message_linear_y_payload = linear_y_data;
-  assign message_linear_y_valid = linear_y_valid;
-  assign message_linear_y_ready = linear_y_ready;
-  assign message_linear_z_payload = linear_z_data;
-  assign message_linear_z_valid = linear_z_valid;
-  assign message_linear_z_ready = linear_z_ready;
-  assign message_angular_x_payload = angular_x_data;
-  assign message_angular_x_valid = angular_x_valid;
-  assign message_angular_x_ready = angular_x_ready;
-  assign message_angular_y_payload = angular_y_data;
-  assign message_angular_y_valid = angular_y_valid;
-  assign message_angular_y_ready = angular_y_ready;
-  assign message_angular_z_payload = angular_z_data;
-  assign message_angular_z_valid = angular_z_valid;
-  assign message_angular_z_ready = angular_z_ready;
 endmodule

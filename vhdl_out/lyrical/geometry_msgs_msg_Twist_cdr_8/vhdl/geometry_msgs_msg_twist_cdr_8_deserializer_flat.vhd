@@ -2,7 +2,16 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
--- Steps, as `firm-hdl plan --program` prints and explains them:
+-- Steps, as `firm-hdl plan --program` prints them.
+-- One line a step: its number and name, what it takes, and where it leads. A step is one cycle.
+-- "map": bytes at fixed places, at most two bus words. "items": a bus word of a string or an
+-- array, which is a run of them. "rest": the last items of a run, which the next step takes
+-- before its map; "rest x 8": of 8 bytes each. "lanes": the bytes of the bus, from 0 on. "unit
+-- 4": bytes start and end at multiples of 4. "body": the step after a length that more than a
+-- rest follows. "level 0": the outermost sequence of elements; "while level 0": while it has
+-- elements left. "to 2 (+8)": the last byte of step 2 is 8 bytes after that of this step; with
+-- "align 4 | 3", then down to a multiple of 4, and 3 more: from byte 21, "+6, align 4 | 3" leads
+-- to byte 27. "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
 -- deserializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4
 --   0 linear_x: map of 8; begins linear.x; checks 0=00 1=01; to 1 (+8)
 --   1 linear_x_2: map of 8; linear.x; begins linear.y; to 2 (+8)
@@ -11,9 +20,15 @@
 --   4 angular_x: map of 8; angular.x; begins angular.y; to 5 (+12)
 --   5 angular_y: map of 12 in two words; angular.y angular.z; to end (+0)
 --   6 packet_end: end of the packet
+-- A status has 3 bits inside, and 8 at its ports, as the constants of firm_hdl_types_pkg.
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.buffer of the Amaranth design.
 -- Buffer: Give each beat a position in the ring; tell how many bytes of the current packet
 -- arrived.
+--
+-- The buffer itself stores no bytes: its readers write `beat` to memories of their own, and read
+-- it from the next cycle on. The sequencer stores decoded lengths and flags, the mover the bytes.
+--
+-- Latency 1 cycle from `packets` to `arrival.beat`, and 2 cycles to `arrival.limit`.
 -- 11 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 1 register at rising_edge(aclk), no reset.
 
@@ -30,7 +45,8 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer is
     packets_valid     : in  std_logic;
     arrival_next      : in  std_logic;
     freed             : in  unsigned(3 downto 0);
-    packets_payload   : in  unsigned(68 downto 0);
+    packets_payload   : in  unsigned(68 downto 0);  -- bits: data(63:0) count(67:64) last(68)
+    -- bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
     arrival_beat      : out unsigned(73 downto 0);
     packets_ready     : out std_logic;
     arrival_limit     : out unsigned(6 downto 0);
@@ -42,15 +58,16 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer is
 
   -- Registers.
-  signal packets_ready_q     : std_logic := '1';
+  signal room                : std_logic := '1';
   signal arrival_limit_q     : unsigned(6 downto 0) := (others => '0');
   signal arrival_following_q : unsigned(3 downto 0) := (others => '0');
   signal arrival_ended_q     : std_logic := '0';
   signal full                : std_logic := '0';
+  -- bits as of packets_payload
   signal payload             : unsigned(68 downto 0) := (others => '0');
   signal arrived             : unsigned(3 downto 0) := (others => '0');
   signal at                  : unsigned(3 downto 0) := (others => '0');
-  -- the end of the packet after the current one
+  -- the end of the packet after the current one; bits: limit(6:0) following(10:7)
   signal second              : unsigned(10 downto 0) := (others => '0');
   signal has_second          : std_logic := '0';
   -- ends stored in the memory, modulo 2 laps
@@ -69,7 +86,7 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   signal first           : unsigned(10 downto 0);
   signal more            : std_logic;
   signal follows         : std_logic;
-  signal or_14           : std_logic;
+  signal takes_first     : std_logic;
   signal has_second_next : std_logic;
   signal ends_read_data  : unsigned(10 downto 0);
   signal payload_count   : unsigned(3 downto 0);
@@ -77,21 +94,11 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer 
   signal first_limit     : unsigned(6 downto 0);
   signal first_following : unsigned(3 downto 0);
 
-  -- Signals that no logic reads, for simulation.
-  signal room            : std_logic;
-  signal next_beat       : unsigned(3 downto 0);
-  signal ends_write_addr : unsigned(2 downto 0);
-  signal ends_write_data : unsigned(10 downto 0);
-  signal ends_write_en   : std_logic;
-  signal ends_read_addr  : unsigned(2 downto 0);
-  signal end_sig         : unsigned(10 downto 0);
-  signal newest          : unsigned(10 downto 0);
-
   type ends_array is array (0 to 7) of unsigned(10 downto 0);
   signal ends : ends_array := (others => (others => '0'));
 begin
 
-  arrives <= packets_valid and packets_ready_q;
+  arrives <= packets_valid and room;
   used <= arrived - freed;
   end_following <= at + 1;
   ends_now <= full and payload_last;
@@ -101,7 +108,7 @@ begin
   first <= second when has_second = '1' else end_following & newest_limit;
   more <= stored or ends_now;
   follows <= arrival_ended_q and ends_now;
-  or_14 <= arrival_next or not arrival_ended_q;
+  takes_first <= arrival_next or not arrival_ended_q;
   has_second_next <= not arrival_next or more when has_second = '1' else not arrival_next and
       follows;
 
@@ -121,7 +128,7 @@ begin
         full <= '0';
         arrived <= (others => '0');
         at <= (others => '0');
-        packets_ready_q <= '1';
+        room <= '1';
         arrival_limit_q <= (others => '0');
         arrival_following_q <= (others => '0');
         arrival_ended_q <= '0';
@@ -133,8 +140,8 @@ begin
         full <= arrives;
         arrived <= arrived + arrives;
         at <= at + full;
-        packets_ready_q <= not used(3) and not (to_std_logic(used = 7) and arrives);
-        if or_14 = '1' then
+        room <= not used(3) and not (to_std_logic(used = 7) and arrives);
+        if takes_first = '1' then
           arrival_limit_q <= first_limit;
           arrival_following_q <= first_following;
           arrival_ended_q <= has_second or ends_now;
@@ -170,24 +177,20 @@ begin
   first_following <= first(10 downto 7);
   arrival_beat <= full & at & payload;
 
-  packets_ready <= packets_ready_q;
+  packets_ready <= room;
   arrival_limit <= arrival_limit_q;
   arrival_following <= arrival_following_q;
   arrival_ended <= arrival_ended_q;
-
-  room <= packets_ready_q;
-  next_beat <= end_following;
-  ends_write_addr <= pushed(2 downto 0);
-  ends_write_data <= end_following & end_limit;
-  ends_write_en <= '1';
-  ends_read_addr <= popped(2 downto 0);
-  end_sig <= end_following & end_limit;
-  newest <= end_following & newest_limit;
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer.byte_flags of the Amaranth design.
 -- ByteFlags: Flags of the packet buffer: one for each byte, and those of headers for each beat.
+--
+-- Whether a beat is that of a header is not known as it arrives. So every beat is compared with
+-- the checked bytes of each header state, and the sequencer reads the flag of the right beat.
+--
+-- Flags are written together with their beat, and read combinationally.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -200,6 +203,7 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags
     rst       : in  std_logic;
     aclk      : in  std_logic;
     mismatch  : out std_logic;
+    -- bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
     beat      : in  unsigned(73 downto 0);
     header_at : in  unsigned(3 downto 0)
   );
@@ -214,12 +218,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal beat_last                : std_logic;
   signal beat_at                  : unsigned(3 downto 0);
   signal beat_valid               : std_logic;
-
-  -- Signals that no logic reads, for simulation.
-  signal headers_table_write_addr : unsigned(2 downto 0);
-  signal headers_table_write_en   : std_logic;
-  signal headers_table_read_addr  : unsigned(2 downto 0);
-  signal headers_table_read_data  : std_logic;
 
   type headers_table_array is array (0 to 7) of unsigned(0 downto 0);
   signal headers_table : headers_table_array := (others => (others => '0'));
@@ -246,17 +244,40 @@ begin
   beat_at <= beat(72 downto 69);
   beat_valid <= beat(73);
 
-  headers_table_write_addr <= beat(71 downto 69);
-  headers_table_write_en <= beat(73);
-  headers_table_read_addr <= header_at(2 downto 0);
-  headers_table_read_data <= mismatch;
-
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.sequencer of the Amaranth design.
 -- Sequencer: Run a program over the packets in the buffer: check them, and give orders to the
 -- mover.
--- 22 registers at rising_edge(aclk), synchronous reset rst = '1'.
+--
+-- Each state gives one order, once all its bytes are in the buffer. The sequencer waits only for
+-- bytes and for `orders.ready`. The last order of a packet carries its status. The page "How the
+-- converters work" follows one packet through all cycles.
+--
+-- An error in the bytes of a state takes two cycles: one finds it, and one computes which bytes
+-- are good. Then the state is ordered with its good bytes. All later states are ordered without
+-- bytes and with lengths of 0, and the rest of the packet is dropped:
+--
+--     cycle         | 0        | 1         | 2            | 3
+--     state         | s        | s         | s            | next one
+--     found         | 1        |           |              |
+--     bad           |          | 1         | 1            | 1
+--     new_error     |          | 1         |              |
+--     *_room        |          |           | good bytes   | 0
+--     orders.valid  |          |           | s            | next one
+--
+-- A length over its limit takes no cycle: its state transfers it as 0.
+--
+-- A length that is charged to the Budget stalls the sequencer before the next state. Its
+-- order waits, too. If the length claims too much, its order transfers it as 0, and the sequencer
+-- goes back to the length's state, and leaves it with an order that has no state:
+--
+--     cycle         | 0        | 1         | 2         | 3         | 4           | 5
+--     state         | length   | body      | body      | body      | body        | length
+--     pending       |          | 1         | 1         | 1         | 1           |
+--     zero_length   |          |           |           |           | 1           |
+--     orders.valid  | length   |           |           |           |             | blank
+-- 21 registers at rising_edge(aclk), synchronous reset rst = '1'.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -271,10 +292,14 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer is
     orders_valid      : out std_logic;
     arrival_next      : out std_logic;
     orders_ready      : in  std_logic;
+    -- bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
     beat              : in  unsigned(73 downto 0);
     arrival_limit     : in  unsigned(6 downto 0);
     arrival_following : in  unsigned(3 downto 0);
     arrival_ended     : in  std_logic;
+    -- bits: step(2:0) blank(3) items_at(9:4) map_at(15:10) items_next(18:16) map_next(21:19)
+    -- items_bytes(25:22) map_bytes(29:26) items(30) last(31) length_good(32) final(33) first(37:34)
+    -- ends(38) status(41:39)
     orders_payload    : out unsigned(41 downto 0);
     header_at         : out unsigned(3 downto 0)
   );
@@ -297,12 +322,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal new_error       : std_logic := '0';
   signal items_room      : unsigned(3 downto 0) := (others => '0');
   signal map_room        : unsigned(3 downto 0) := (others => '0');
-  signal rest            : std_logic := '0';
+  signal rest            : std_logic := '0';  -- items in the rest of the run
   signal has_nul         : std_logic := '0';
+  -- first byte after the step before
   signal first_at        : unsigned(6 downto 0) := (others => '0');
+  -- last byte of the step's map or word
   signal last_at         : unsigned(6 downto 0) := "0000111";
-  signal words_last      : std_logic := '1';
-  signal words_less      : std_logic := '0';
+  signal words_last      : std_logic := '1';  -- one is left
   signal step_linear_x   : std_logic := '1';  -- step 0: map of 8; begins linear.x
   signal step_linear_x_2 : std_logic := '0';  -- step 1: map of 8; linear.x; begins linear.y
   signal step_linear_y   : std_logic := '0';  -- step 2: map of 8; linear.y; begins linear.z
@@ -310,16 +336,17 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal step_angular_x  : std_logic := '0';  -- step 4: map of 8; angular.x; begins angular.y
   signal step_angular_y  : std_logic := '0';  -- step 5: map of 12 in two words; angular.y angular.z
   signal step_packet_end : std_logic := '0';  -- step 6: end of the packet
-  signal at_end          : std_logic := '0';
+  signal at_end          : std_logic := '0';  -- the message is over, but not the packet
   -- signed: first byte of the map's last word, relative to last_at
   signal map_offset      : unsigned(4 downto 0) := "11001";
-  signal two_word_map    : std_logic := '0';
+  signal two_word_map    : std_logic := '0';  -- the map has two bus words
+  -- bytes from last_at to the last byte of the step after it
   signal exit_add        : unsigned(5 downto 0) := "001000";
 
   -- Combinational signals.
   signal mismatch                   : std_logic;
+  signal not_last_at                : unsigned(6 downto 0);  -- -1 - last_at
   signal step_end                   : unsigned(6 downto 0);
-  signal not_2                      : unsigned(6 downto 0);
   signal left                       : unsigned(6 downto 0);
   signal present                    : std_logic;
   signal ends_message               : std_logic;
@@ -330,15 +357,21 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   signal bytes_good                 : std_logic;
   signal stops                      : std_logic;
   signal drains                     : std_logic;
-  signal orders_payload_length_good : std_logic;
+  signal length_accepted            : std_logic;
   signal allowed                    : std_logic;
   signal issue                      : std_logic;
+  signal first_beat_of_map          : unsigned(3 downto 0);
   signal map_at                     : unsigned(6 downto 0);
-  signal sub_64                     : unsigned(3 downto 0);
-  signal sub_74                     : unsigned(5 downto 0);
-  signal or_119                     : unsigned(5 downto 0);
-  signal map_left                   : unsigned(6 downto 0);
+  signal one_less_map_offset        : unsigned(5 downto 0);  -- 1 - map_offset, signed
+  -- of the sum of three numbers, bit by bit; one addition is left
+  signal map_left_carries           : unsigned(5 downto 0);
+  signal map_left_without_carries   : unsigned(6 downto 0);
+  signal map_left                   : unsigned(6 downto 0);  -- signed: limit - map_at
   signal map_room_if_cut            : unsigned(3 downto 0);
+  signal items_left                 : unsigned(6 downto 0);
+  signal rest_room_if_cut           : unsigned(3 downto 0);
+  signal items_room_if_cut          : unsigned(3 downto 0);
+  signal bad_drained                : std_logic;
   signal orders_payload_items_next  : unsigned(2 downto 0);
   signal orders_payload_map_next    : unsigned(2 downto 0);
   signal orders_payload_items_bytes : unsigned(3 downto 0);
@@ -346,50 +379,15 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequenc
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal orders_payload_status      : unsigned(2 downto 0);
   signal exit_sum                   : unsigned(6 downto 0);
+  -- its first step ends 7 bytes after its first byte
+  signal last_at_of_next_packet     : unsigned(6 downto 0);
   signal early_last_at              : unsigned(6 downto 0);
-  signal to_exit                    : std_logic;
-  signal and_190                    : std_logic;
-  signal items_room_next            : unsigned(3 downto 0);
-  signal first_at_next              : unsigned(6 downto 0);
-  signal map_offset_next_3          : std_logic;
+  signal first_at_if_bad            : unsigned(6 downto 0);
+  signal moves_on                   : std_logic;
+  signal map_offset_next_3          : std_logic;  -- also map_offset_next_4
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal good_status                : unsigned(2 downto 0);
   signal orders_payload_map_at      : unsigned(5 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal arrival_beat   : unsigned(73 downto 0);
-  signal nul_at         : unsigned(6 downto 0);
-  signal nul_at_17      : unsigned(6 downto 0);
-  signal nonzero        : std_logic;
-  signal nul_within     : unsigned(6 downto 0);
-  signal oldest         : unsigned(3 downto 0);
-  signal items_at       : unsigned(6 downto 0);
-  signal next_packet    : unsigned(6 downto 0);
-  signal over_rest      : unsigned(5 downto 0);
-  signal to_exit_low    : unsigned(6 downto 0);
-  signal body_sum       : unsigned(6 downto 0);
-  signal to_body_low    : unsigned(6 downto 0);
-  signal words_loads    : std_logic;
-  signal exits_always   : std_logic;
-  signal done           : std_logic;
-  signal wrong_nul      : std_logic;
-  signal items_wanted   : unsigned(3 downto 0);
-  signal exit_amount    : unsigned(5 downto 0);
-  signal to_exit_mask   : unsigned(2 downto 0);
-  signal exit_last_at   : unsigned(6 downto 0);
-  signal body_amount    : unsigned(5 downto 0);
-  signal to_body_mask   : unsigned(2 downto 0);
-  signal body_last_at   : unsigned(6 downto 0);
-  signal next_last_at   : unsigned(6 downto 0);
-  signal to_body        : std_logic;
-  signal words_down     : std_logic;
-  signal words_keeps    : std_logic;
-  signal words_is_small : std_logic;
-  signal words_is_2     : std_logic;
-  signal words_is_3     : std_logic;
-  signal words_is_4     : std_logic;
-  signal words_pending  : std_logic;
-  signal words_value    : unsigned(2 downto 0);
 begin
 
   byte_flags : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_sequencer_byte_flags
@@ -401,9 +399,9 @@ begin
       header_at => first_at(6 downto 3)
     );
 
+  not_last_at <= not last_at;
   step_end <= last_at + 1;
-  not_2 <= not last_at;
-  left <= arrival_limit + not_2;
+  left <= arrival_limit + not_last_at;
   present <= not left(6);
   ends_message <= at_end or step_angular_y;
   ends_packet <= ends_message and arrival_ended;
@@ -414,33 +412,38 @@ begin
   bytes_good <= present and not (step_linear_x and mismatch);
   stops <= header_error or cut or (ends_message and not arrival_ended and trailing);
   drains <= bad and not new_error and (not at_end or arrival_ended);
-  orders_payload_length_good <= not bad;
-  allowed <= orders_payload_length_good and (not ends_message or arrival_ended);
+  length_accepted <= not bad;
+  allowed <= length_accepted and (not ends_message or arrival_ended);
   orders_valid <= drains or (allowed and bytes_good);
   issue <= (drains and orders_ready) or (allowed and orders_ready and bytes_good);
   arrival_next <= (drains and orders_ready and ends_packet) or (allowed and orders_ready and
       ends_packet and bytes_good);
+  first_beat_of_map <= map_at(6 downto 3) - two_word_map;
   map_at <= last_at + sign_extend(map_offset, 7);
-  sub_64 <= map_at(6 downto 3) - two_word_map;
-  sub_74 <= unsigned'("000001") - sign_extend(map_offset, 6);
-  or_119 <= (arrival_limit(5 downto 0) and not_2(5 downto 0)) or (arrival_limit(5 downto 0) and
-      sub_74) or (not_2(5 downto 0) and sub_74);
-  map_left <= (arrival_limit xor not_2 xor sign_extend(sub_74, 7)) + unsigned'(or_119 & '0');
+  one_less_map_offset <= unsigned'("000001") - sign_extend(map_offset, 6);
+  map_left_carries <= (arrival_limit(5 downto 0) and not_last_at(5 downto 0)) or
+      (arrival_limit(5 downto 0) and one_less_map_offset) or (not_last_at(5 downto 0) and
+      one_less_map_offset);
+  map_left_without_carries <= arrival_limit xor not_last_at xor sign_extend(one_less_map_offset, 7);
+  map_left <= map_left_without_carries + unsigned'(map_left_carries & '0');
   map_room_if_cut <= (others => '0') when map_left(6) = '1' else mux(to_std_logic(map_left >= 8),
       "1000", map_left(3 downto 0));
-  orders_payload_items_next <= sub_64(2 downto 0) + 1;
+  items_left <= arrival_limit - first_at;
+  rest_room_if_cut <= (others => '0') when items_left(6) = '1' else
+      mux(to_std_logic(items_left >= 8), "1000", items_left(3 downto 0));
+  items_room_if_cut <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
+      "000"), 4), "1000") when two_word_map = '1' else map_room_if_cut;
+  bad_drained <= bad and drains and orders_ready;
+  orders_payload_items_next <= first_beat_of_map(2 downto 0) + 1;
   orders_payload_map_next <= orders_payload_map_at(5 downto 3) + 1;
   orders_payload_items_bytes <= items_room when bad = '1' and items_room < 8 else "1000";
   orders_payload_map_bytes <= map_room when bad = '1' else "1000";
   orders_payload_status <= code when bad = '1' else good_status;
   exit_sum <= last_at + exit_add;
-  early_last_at <= unsigned'(arrival_following & "000") + 7 when ends_packet = '1' else exit_sum;
-  to_exit <= issue and not ends_packet;
-  and_190 <= bad and drains and orders_ready;
-  items_room_next <= mux(map_left(6), resize(mux(and map_left(6 downto 3), map_left(2 downto 0),
-      "000"), 4), "1000") when two_word_map = '1' else map_room_if_cut;
-  first_at_next <= arrival_following & "000" when ends_packet = '1' else mux(bad, mux(at_end,
-      arrival_limit, first_at), step_end);
+  last_at_of_next_packet <= unsigned'(arrival_following & "000") + 7;
+  early_last_at <= last_at_of_next_packet when ends_packet = '1' else exit_sum;
+  first_at_if_bad <= arrival_limit when at_end = '1' else first_at;
+  moves_on <= issue and not ends_packet;
   map_offset_next_3 <= step_linear_x or step_linear_x_2 or step_linear_y or step_linear_z or
       step_angular_x;
 
@@ -461,7 +464,6 @@ begin
         first_at <= (others => '0');
         last_at <= "0000111";
         words_last <= '1';
-        words_less <= '0';
         step_linear_x <= '1';
         step_linear_x_2 <= '0';
         step_linear_y <= '0';
@@ -476,7 +478,7 @@ begin
       else
         if issue = '1' and ends_packet = '1' then
           bad <= '0';
-        elsif orders_payload_length_good = '1' then
+        elsif length_accepted = '1' then
           bad <= stops;
           if ends_message = '1' then
             code <= STATUS_TRAILING;
@@ -489,7 +491,7 @@ begin
             code <= STATUS_TRUNCATED;
           end if;
         end if;
-        new_error <= stops and orders_payload_length_good;
+        new_error <= stops and length_accepted;
         if bad = '1' and new_error = '1' then
           if code = STATUS_TRAILING or code = STATUS_STRING then
             items_room <= "1000";
@@ -497,7 +499,7 @@ begin
             items_room <= (others => '0');
           end if;
           if code = STATUS_TRUNCATED then
-            items_room <= items_room_next;
+            items_room <= items_room_if_cut;
           end if;
           if code = STATUS_TRAILING then
             map_room <= "1000";
@@ -507,7 +509,7 @@ begin
           if code = STATUS_TRUNCATED then
             map_room <= map_room_if_cut;
           end if;
-        elsif and_190 = '1' then
+        elsif bad_drained = '1' then
           items_room <= (others => '0');
           map_room <= (others => '0');
         end if;
@@ -547,10 +549,17 @@ begin
           end if;
         end if;
         if issue = '1' or (bad = '1' and at_end = '1') then
-          first_at <= first_at_next;
+          if ends_packet = '1' then
+            first_at <= arrival_following & "000";
+          else
+            if bad = '1' then
+              first_at <= first_at_if_bad;
+            else
+              first_at <= step_end;
+            end if;
+          end if;
         end if;
         words_last <= words_last;
-        words_less <= words_less;
       end if;
     end if;
   end process;
@@ -558,45 +567,11 @@ begin
   header_at <= first_at(6 downto 3);
   orders_payload_map_at <= map_at(5 downto 0);
   orders_payload <= orders_payload_status & ends_packet & first_at(6 downto 3) & '0' &
-      orders_payload_length_good & words_last & '0' & orders_payload_map_bytes &
-      orders_payload_items_bytes & orders_payload_map_next & orders_payload_items_next &
-      map_at(5 downto 0) & sub_64(2 downto 0) & map_at(2 downto 0) & at_end & (step_angular_x or
+      length_accepted & words_last & '0' & orders_payload_map_bytes & orders_payload_items_bytes &
+      orders_payload_map_next & orders_payload_items_next & map_at(5 downto 0) &
+      first_beat_of_map(2 downto 0) & map_at(2 downto 0) & at_end & (step_angular_x or
       step_angular_y) & (step_linear_y or step_linear_z) & (step_linear_x_2 or step_linear_z or
       step_angular_y);
-
-  arrival_beat <= beat;
-  nul_at <= (others => '0');
-  nul_at_17 <= (others => '0');
-  nonzero <= '0';
-  nul_within <= arrival_limit;
-  oldest <= first_at(6 downto 3);
-  items_at <= sub_64 & map_at(2 downto 0);
-  next_packet <= arrival_following & "000";
-  over_rest <= (others => '0');
-  to_exit_low <= (others => '0');
-  body_sum <= last_at;
-  to_body_low <= (others => '0');
-  words_loads <= '0';
-  exits_always <= '1';
-  done <= '1';
-  wrong_nul <= '0';
-  items_wanted <= "1000";
-  exit_amount <= exit_add;
-  to_exit_mask <= (others => '0');
-  exit_last_at <= exit_sum;
-  body_amount <= (others => '0');
-  to_body_mask <= (others => '0');
-  body_last_at <= last_at;
-  next_last_at <= early_last_at;
-  to_body <= '0';
-  words_down <= '0';
-  words_keeps <= '1';
-  words_is_small <= '1';
-  words_is_2 <= '0';
-  words_is_3 <= '0';
-  words_is_4 <= '0';
-  words_pending <= '0';
-  words_value <= (others => '0');
 
 end architecture;
 
@@ -619,10 +594,13 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue is
     i_ready   : out std_logic;
     freed     : out unsigned(3 downto 0);
     o_ready   : in  std_logic;
+    -- bits: step(2:0) blank(3) items_at(9:4) map_at(15:10) items_next(18:16) map_next(21:19)
+    -- items_bytes(25:22) map_bytes(29:26) items(30) last(31) length_good(32) final(33) first(37:34)
+    -- ends(38) status(41:39)
     i_payload : in  unsigned(41 downto 0);
     oldest    : in  unsigned(3 downto 0);
     o_valid   : out std_logic;
-    o_payload : out unsigned(41 downto 0)
+    o_payload : out unsigned(41 downto 0)  -- bits as of i_payload
   );
 end entity;
 
@@ -630,9 +608,9 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_queue i
 
   -- Registers.
   signal o_valid_q   : std_logic := '0';
-  signal o_payload_q : unsigned(41 downto 0) := (others => '0');
+  signal o_payload_q : unsigned(41 downto 0) := (others => '0');  -- bits as of i_payload
   signal has_second  : std_logic := '0';
-  -- the order that came while o was waiting
+  -- the order that came while o was waiting; bits as of i_payload
   signal second      : unsigned(41 downto 0) := (others => '0');
 
   -- Combinational signals.
@@ -687,7 +665,17 @@ end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core.mover of the Amaranth design.
 -- Mover: Read two words of the packet buffer per order, and write leaves from their lanes.
--- 25 registers at rising_edge(aclk), synchronous reset rst = '1'.
+--
+-- One cycle reads the words and rotates their first bytes to lane 0; the next cycle writes the
+-- leaves. So a leaf is valid 2 cycles after its order. Leaves of a state become valid in wire
+-- order, each as soon as its register is free. A leaf whose register is full delays only later
+-- leaves:
+--
+--     cycle           | 0        | 1             | 2
+--     orders          | a        | b             | c
+--     words           |          | of a          | of b
+--     leaves of a     |          | are written   | valid
+-- 24 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 11 registers at rising_edge(aclk), no reset.
 
 library ieee;
@@ -708,8 +696,12 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover is
     message_angular_z_ready   : in  std_logic;
     status_ready              : in  std_logic;
     orders_ready              : out std_logic;
+    -- bits: data(63:0) count(67:64) last(68) at(72:69) valid(73)
     beat                      : in  unsigned(73 downto 0);
     orders_valid              : in  std_logic;
+    -- bits: step(2:0) blank(3) items_at(9:4) map_at(15:10) items_next(18:16) map_next(21:19)
+    -- items_bytes(25:22) map_bytes(29:26) items(30) last(31) length_good(32) final(33) first(37:34)
+    -- ends(38) status(41:39)
     orders_payload            : in  unsigned(41 downto 0);
     message_linear_x_valid    : out std_logic;
     message_linear_y_valid    : out std_logic;
@@ -740,45 +732,46 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   constant STEP_ANGULAR_Y : unsigned(2 downto 0) := "101";
 
   -- Registers.
-  signal message_linear_x_valid_q    : std_logic := '0';
-  signal message_linear_y_valid_q    : std_logic := '0';
-  signal message_linear_z_valid_q    : std_logic := '0';
-  signal message_angular_x_valid_q   : std_logic := '0';
-  signal message_angular_y_valid_q   : std_logic := '0';
-  signal message_angular_z_valid_q   : std_logic := '0';
-  signal status_valid_q              : std_logic := '0';
+  signal message_linear_x_valid_q  : std_logic := '0';
+  signal message_linear_y_valid_q  : std_logic := '0';
+  signal message_linear_z_valid_q  : std_logic := '0';
+  signal message_angular_x_valid_q : std_logic := '0';
+  signal message_angular_y_valid_q : std_logic := '0';
+  signal message_angular_z_valid_q : std_logic := '0';
+  signal status_valid_q            : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload_q            : unsigned(2 downto 0) := (others => '0');
-  signal message_linear_x_payload_q  : unsigned(63 downto 0) := (others => '0');
-  signal message_linear_y_payload_q  : unsigned(63 downto 0) := (others => '0');
-  signal message_linear_z_payload_q  : unsigned(63 downto 0) := (others => '0');
-  signal message_angular_x_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal message_angular_y_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal message_angular_z_payload_q : unsigned(63 downto 0) := (others => '0');
-  signal length_good                 : std_logic := '0';
-  signal last                        : std_logic := '0';
-  signal final_sig                   : std_logic := '0';
-  signal items_word                  : unsigned(63 downto 0) := (others => '0');
-  signal items_good                  : unsigned(7 downto 0) := (others => '0');
-  signal map_word                    : unsigned(63 downto 0) := (others => '0');
-  signal map_good                    : unsigned(7 downto 0) := (others => '0');
-  signal begins_linear_x             : std_logic := '0';
-  signal carried                     : unsigned(31 downto 0) := (others => '0');
-  signal begins_linear_x_2           : std_logic := '0';
-  signal begins_linear_y             : std_logic := '0';
-  signal begins_linear_z             : std_logic := '0';
-  signal begins_angular_x            : std_logic := '0';
-  signal active_linear_x             : std_logic := '0';
-  signal active_linear_y             : std_logic := '0';
-  signal active_linear_z             : std_logic := '0';
-  signal active_angular_x            : std_logic := '0';
-  signal active_angular_y            : std_logic := '0';
-  signal active_angular_z            : std_logic := '0';
-  signal ends_now                    : std_logic := '0';
+  signal status_payload_q          : unsigned(2 downto 0) := (others => '0');
+  signal payload_linear_x          : unsigned(63 downto 0) := (others => '0');
+  signal payload_linear_y          : unsigned(63 downto 0) := (others => '0');
+  signal payload_linear_z          : unsigned(63 downto 0) := (others => '0');
+  signal payload_angular_x         : unsigned(63 downto 0) := (others => '0');
+  signal payload_angular_y         : unsigned(63 downto 0) := (others => '0');
+  signal payload_angular_z         : unsigned(63 downto 0) := (others => '0');
+  signal length_good               : std_logic := '0';
+  signal last                      : std_logic := '0';
+  signal items_word                : unsigned(63 downto 0) := (others => '0');
+  -- bit k: byte k of the word is good; else its value is written as 0
+  signal items_good                : unsigned(7 downto 0) := (others => '0');
+  signal map_word                  : unsigned(63 downto 0) := (others => '0');
+  -- bit k: byte k of the word is good; else its value is written as 0
+  signal map_good                  : unsigned(7 downto 0) := (others => '0');
+  signal begins_linear_x           : std_logic := '0';
+  signal carried                   : unsigned(31 downto 0) := (others => '0');
+  signal begins_linear_x_2         : std_logic := '0';
+  signal begins_linear_y           : std_logic := '0';
+  signal begins_linear_z           : std_logic := '0';
+  signal begins_angular_x          : std_logic := '0';
+  signal active_linear_x           : std_logic := '0';
+  signal active_linear_y           : std_logic := '0';
+  signal active_linear_z           : std_logic := '0';
+  signal active_angular_x          : std_logic := '0';
+  signal active_angular_y          : std_logic := '0';
+  signal active_angular_z          : std_logic := '0';
+  signal ends_now                  : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_now                  : unsigned(2 downto 0) := (others => '0');
+  signal status_now                : unsigned(2 downto 0) := (others => '0');
   -- a leaf of the order that is executed, or the status, is full
-  signal slow                        : std_logic := '0';
+  signal slow                      : std_logic := '0';
 
   -- Combinational signals.
   signal full_linear_x              : std_logic;
@@ -807,13 +800,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal blocked_angular_z          : std_logic;
   signal go_angular_z               : std_logic;
   signal ends                       : std_logic;
-  signal and_55                     : std_logic;
-  signal and_63                     : std_logic;
-  signal and_71                     : std_logic;
-  signal and_79                     : std_logic;
-  signal and_87                     : std_logic;
-  signal or_116                     : std_logic;
-  signal or_130                     : std_logic;
+  signal next_order_is_slow         : std_logic;
+  signal order_stays_slow           : std_logic;
+  signal carried_part               : std_logic;
+  signal carried_part_2             : std_logic;
+  signal carried_part_3             : std_logic;
+  signal carried_part_4             : std_logic;
+  signal carried_part_5             : std_logic;
   signal lane_0_items_data          : unsigned(7 downto 0);
   signal lane_0_map_data            : unsigned(7 downto 0);
   signal lane_1_items_data          : unsigned(7 downto 0);
@@ -842,59 +835,9 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_mover i
   signal orders_payload_map_bytes   : unsigned(3 downto 0);
   signal orders_payload_last        : std_logic;
   signal orders_payload_length_good : std_logic;
-  signal orders_payload_final       : std_logic;
   signal orders_payload_ends        : std_logic;
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
   signal orders_payload_status      : unsigned(2 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal take              : std_logic;
-  signal lane_0_write_addr : unsigned(2 downto 0);
-  signal lane_0_write_data : unsigned(7 downto 0);
-  signal lane_0_write_en   : std_logic;
-  signal lane_0_items_addr : unsigned(2 downto 0);
-  signal lane_0_map_addr   : unsigned(2 downto 0);
-  signal lane_1_write_addr : unsigned(2 downto 0);
-  signal lane_1_write_data : unsigned(7 downto 0);
-  signal lane_1_write_en   : std_logic;
-  signal lane_1_items_addr : unsigned(2 downto 0);
-  signal lane_1_map_addr   : unsigned(2 downto 0);
-  signal lane_2_write_addr : unsigned(2 downto 0);
-  signal lane_2_write_data : unsigned(7 downto 0);
-  signal lane_2_write_en   : std_logic;
-  signal lane_2_items_addr : unsigned(2 downto 0);
-  signal lane_2_map_addr   : unsigned(2 downto 0);
-  signal lane_3_write_addr : unsigned(2 downto 0);
-  signal lane_3_write_data : unsigned(7 downto 0);
-  signal lane_3_write_en   : std_logic;
-  signal lane_3_items_addr : unsigned(2 downto 0);
-  signal lane_3_map_addr   : unsigned(2 downto 0);
-  signal lane_4_write_addr : unsigned(2 downto 0);
-  signal lane_4_write_data : unsigned(7 downto 0);
-  signal lane_4_write_en   : std_logic;
-  signal lane_4_items_addr : unsigned(2 downto 0);
-  signal lane_4_map_addr   : unsigned(2 downto 0);
-  signal lane_5_write_addr : unsigned(2 downto 0);
-  signal lane_5_write_data : unsigned(7 downto 0);
-  signal lane_5_write_en   : std_logic;
-  signal lane_5_items_addr : unsigned(2 downto 0);
-  signal lane_5_map_addr   : unsigned(2 downto 0);
-  signal lane_6_write_addr : unsigned(2 downto 0);
-  signal lane_6_write_data : unsigned(7 downto 0);
-  signal lane_6_write_en   : std_logic;
-  signal lane_6_items_addr : unsigned(2 downto 0);
-  signal lane_6_map_addr   : unsigned(2 downto 0);
-  signal lane_7_write_addr : unsigned(2 downto 0);
-  signal lane_7_write_data : unsigned(7 downto 0);
-  signal lane_7_write_en   : std_logic;
-  signal lane_7_items_addr : unsigned(2 downto 0);
-  signal lane_7_map_addr   : unsigned(2 downto 0);
-  signal payload_linear_x  : unsigned(63 downto 0);
-  signal payload_linear_y  : unsigned(63 downto 0);
-  signal payload_linear_z  : unsigned(63 downto 0);
-  signal payload_angular_x : unsigned(63 downto 0);
-  signal payload_angular_y : unsigned(63 downto 0);
-  signal payload_angular_z : unsigned(63 downto 0);
 
   type lane_0_array is array (0 to 7) of unsigned(7 downto 0);
   signal lane_0 : lane_0_array := (others => (others => '0'));
@@ -950,21 +893,21 @@ begin
   blocked_angular_z <= active_angular_z and message_angular_z_valid_q;
   go_angular_z <= active_angular_z and not blocked_angular_z and not blocked_angular_y;
   ends <= orders_valid and orders_payload_ends;
-  orders_ready <= not slow;
-  and_55 <= orders_ready and begins_linear_x;
-  and_63 <= orders_ready and begins_linear_x_2;
-  and_71 <= orders_ready and begins_linear_y;
-  and_79 <= orders_ready and begins_linear_z;
-  and_87 <= orders_ready and begins_angular_x;
-  or_116 <= (chosen_step_linear_x_2 and full_linear_x) or (chosen_step_linear_y and
+  next_order_is_slow <= (chosen_step_linear_x_2 and full_linear_x) or (chosen_step_linear_y and
       full_linear_y) or (chosen_step_linear_z and full_linear_z) or (chosen_step_angular_x and
       full_angular_x) or (chosen_step_angular_y and full_angular_y) or (chosen_step_angular_y and
       full_angular_z) or (ends and status_full);
-  or_130 <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
+  order_stays_slow <= (blocked_linear_x and not message_linear_x_ready) or (blocked_linear_y and
       not message_linear_y_ready) or (blocked_linear_z and not message_linear_z_ready) or
       (blocked_angular_x and not message_angular_x_ready) or (blocked_angular_y and
       not message_angular_y_ready) or (blocked_angular_z and not message_angular_z_ready) or
       (ends_now and status_full);
+  orders_ready <= not slow;
+  carried_part <= orders_ready and begins_linear_x;
+  carried_part_2 <= orders_ready and begins_linear_x_2;
+  carried_part_3 <= orders_ready and begins_linear_y;
+  carried_part_4 <= orders_ready and begins_linear_z;
+  carried_part_5 <= orders_ready and begins_angular_x;
 
   process (aclk)
   begin
@@ -1083,7 +1026,6 @@ begin
         status_valid_q <= '0';
         length_good <= '0';
         last <= '0';
-        final_sig <= '0';
         begins_linear_x <= '0';
         begins_linear_x_2 <= '0';
         begins_linear_y <= '0';
@@ -1146,7 +1088,6 @@ begin
           end if;
           length_good <= orders_payload_length_good;
           last <= orders_payload_last;
-          final_sig <= orders_payload_final;
           begins_linear_x <= orders_valid and not orders_payload_blank and
               to_std_logic(orders_payload_step = STEP_LINEAR_X);
           begins_linear_x_2 <= orders_valid and not orders_payload_blank and
@@ -1191,9 +1132,9 @@ begin
           active_angular_z <= active_angular_z and not go_angular_z;
         end if;
         if orders_ready = '1' then
-          slow <= or_116;
+          slow <= next_order_is_slow;
         else
-          slow <= or_130;
+          slow <= order_stays_slow;
         end if;
       end if;
     end if;
@@ -1224,107 +1165,85 @@ begin
             to_std_logic(orders_payload_map_bytes > 2) &
             to_std_logic(orders_payload_map_bytes > 1) & to_std_logic(orders_payload_map_bytes > 0);
       end if;
-      if and_55 = '1' then
+      if carried_part = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_55 = '1' then
+      if carried_part = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_55 = '1' then
+      if carried_part = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_55 = '1' then
+      if carried_part = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_63 = '1' then
+      if carried_part_2 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_63 = '1' then
+      if carried_part_2 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_63 = '1' then
+      if carried_part_2 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_63 = '1' then
+      if carried_part_2 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_71 = '1' then
+      if carried_part_3 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_71 = '1' then
+      if carried_part_3 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_71 = '1' then
+      if carried_part_3 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_71 = '1' then
+      if carried_part_3 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_79 = '1' then
+      if carried_part_4 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_79 = '1' then
+      if carried_part_4 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_79 = '1' then
+      if carried_part_4 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_79 = '1' then
+      if carried_part_4 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
-      if and_87 = '1' then
+      if carried_part_5 = '1' then
         carried(7 downto 0) <= map_word(39 downto 32);
       end if;
-      if and_87 = '1' then
+      if carried_part_5 = '1' then
         carried(15 downto 8) <= map_word(47 downto 40);
       end if;
-      if and_87 = '1' then
+      if carried_part_5 = '1' then
         carried(23 downto 16) <= map_word(55 downto 48);
       end if;
-      if and_87 = '1' then
+      if carried_part_5 = '1' then
         carried(31 downto 24) <= map_word(63 downto 56);
       end if;
       if go_linear_x = '1' then
-        if map_good(3) = '1' then
-          message_linear_x_payload_q <= map_word(31 downto 0) & carried;
-        else
-          message_linear_x_payload_q <= (others => '0');
-        end if;
+        payload_linear_x <= mux(map_good(3), map_word(31 downto 0) & carried, x"0000000000000000");
       end if;
       if go_linear_y = '1' then
-        if map_good(3) = '1' then
-          message_linear_y_payload_q <= map_word(31 downto 0) & carried;
-        else
-          message_linear_y_payload_q <= (others => '0');
-        end if;
+        payload_linear_y <= mux(map_good(3), map_word(31 downto 0) & carried, x"0000000000000000");
       end if;
       if go_linear_z = '1' then
-        if map_good(3) = '1' then
-          message_linear_z_payload_q <= map_word(31 downto 0) & carried;
-        else
-          message_linear_z_payload_q <= (others => '0');
-        end if;
+        payload_linear_z <= mux(map_good(3), map_word(31 downto 0) & carried, x"0000000000000000");
       end if;
       if go_angular_x = '1' then
-        if map_good(3) = '1' then
-          message_angular_x_payload_q <= map_word(31 downto 0) & carried;
-        else
-          message_angular_x_payload_q <= (others => '0');
-        end if;
+        payload_angular_x <= mux(map_good(3), map_word(31 downto 0) & carried, x"0000000000000000");
       end if;
       if go_angular_y = '1' then
-        if items_good(3) = '1' then
-          message_angular_y_payload_q <= items_word(31 downto 0) & carried;
-        else
-          message_angular_y_payload_q <= (others => '0');
-        end if;
+        payload_angular_y <= mux(items_good(3), items_word(31 downto 0) & carried,
+            x"0000000000000000");
       end if;
       if go_angular_z = '1' then
-        if map_good(3) = '1' then
-          message_angular_z_payload_q <= map_word(31 downto 0) & items_word(63 downto 32);
-        else
-          message_angular_z_payload_q <= (others => '0');
-        end if;
+        payload_angular_z <= mux(map_good(3), map_word(31 downto 0) & items_word(63 downto 32),
+            x"0000000000000000");
       end if;
     end if;
   end process;
@@ -1340,7 +1259,6 @@ begin
   orders_payload_map_bytes <= orders_payload(29 downto 26);
   orders_payload_last <= orders_payload(31);
   orders_payload_length_good <= orders_payload(32);
-  orders_payload_final <= orders_payload(33);
   orders_payload_ends <= orders_payload(38);
   orders_payload_status <= orders_payload(41 downto 39);
 
@@ -1352,65 +1270,30 @@ begin
   message_angular_z_valid <= message_angular_z_valid_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
-  message_linear_x_payload <= message_linear_x_payload_q;
-  message_linear_y_payload <= message_linear_y_payload_q;
-  message_linear_z_payload <= message_linear_z_payload_q;
-  message_angular_x_payload <= message_angular_x_payload_q;
-  message_angular_y_payload <= message_angular_y_payload_q;
-  message_angular_z_payload <= message_angular_z_payload_q;
-
-  take <= orders_ready;
-  lane_0_write_addr <= beat(71 downto 69);
-  lane_0_write_data <= beat(7 downto 0);
-  lane_0_write_en <= beat(73);
-  lane_0_items_addr <= orders_payload(9 downto 7);
-  lane_0_map_addr <= orders_payload(15 downto 13);
-  lane_1_write_addr <= beat(71 downto 69);
-  lane_1_write_data <= beat(15 downto 8);
-  lane_1_write_en <= beat(73);
-  lane_1_items_addr <= orders_payload(9 downto 7);
-  lane_1_map_addr <= orders_payload(15 downto 13);
-  lane_2_write_addr <= beat(71 downto 69);
-  lane_2_write_data <= beat(23 downto 16);
-  lane_2_write_en <= beat(73);
-  lane_2_items_addr <= orders_payload(9 downto 7);
-  lane_2_map_addr <= orders_payload(15 downto 13);
-  lane_3_write_addr <= beat(71 downto 69);
-  lane_3_write_data <= beat(31 downto 24);
-  lane_3_write_en <= beat(73);
-  lane_3_items_addr <= orders_payload(9 downto 7);
-  lane_3_map_addr <= orders_payload(15 downto 13);
-  lane_4_write_addr <= beat(71 downto 69);
-  lane_4_write_data <= beat(39 downto 32);
-  lane_4_write_en <= beat(73);
-  lane_4_items_addr <= orders_payload(9 downto 7);
-  lane_4_map_addr <= orders_payload(15 downto 13);
-  lane_5_write_addr <= beat(71 downto 69);
-  lane_5_write_data <= beat(47 downto 40);
-  lane_5_write_en <= beat(73);
-  lane_5_items_addr <= orders_payload(9 downto 7);
-  lane_5_map_addr <= orders_payload(15 downto 13);
-  lane_6_write_addr <= beat(71 downto 69);
-  lane_6_write_data <= beat(55 downto 48);
-  lane_6_write_en <= beat(73);
-  lane_6_items_addr <= orders_payload(9 downto 7);
-  lane_6_map_addr <= orders_payload(15 downto 13);
-  lane_7_write_addr <= beat(71 downto 69);
-  lane_7_write_data <= beat(63 downto 56);
-  lane_7_write_en <= beat(73);
-  lane_7_items_addr <= orders_payload(9 downto 7);
-  lane_7_map_addr <= orders_payload(15 downto 13);
-  payload_linear_x <= message_linear_x_payload_q;
-  payload_linear_y <= message_linear_y_payload_q;
-  payload_linear_z <= message_linear_z_payload_q;
-  payload_angular_x <= message_angular_x_payload_q;
-  payload_angular_y <= message_angular_y_payload_q;
-  payload_angular_z <= message_angular_z_payload_q;
+  message_linear_x_payload <= payload_linear_x;
+  message_linear_y_payload <= payload_linear_y;
+  message_linear_z_payload <= payload_linear_z;
+  message_angular_x_payload <= payload_angular_x;
+  message_angular_y_payload <= payload_angular_y;
+  message_angular_z_payload <= payload_angular_z;
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer.core of the Amaranth design.
 -- Deserializer: Turn packets into messages.
+--
+-- A packet advances one step of the plan per cycle, as soon as the bytes of the step have arrived.
+-- Each step gives an order to a queue of two, and every leaf has one register. Leaves that are not
+-- taken hold the packet only when the queue is full. Most leaves cost one cycle more if they are
+-- still full when their next value comes.
+--
+-- Leaves become valid in wire order, `LATENCY_CYCLES["deserializer"]` cycles after the last beat
+-- of their step. All outputs are registers. One clock domain, `sync`; its reset discards all
+-- packets and messages inside.
+--
+-- Each packet ends in one transfer on `status`. After the first error in a packet, the remaining
+-- scalars and lengths transfer as 0, the current sequence is completed with zeros, and the rest of
+-- the packet is dropped. The next packet is decoded normally.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -1430,6 +1313,7 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
     message_angular_y_ready   : in  std_logic;
     message_angular_z_ready   : in  std_logic;
     status_ready              : in  std_logic;
+    -- bits: data(63:0) count(67:64) last(68)
     packets_payload           : in  unsigned(68 downto 0);
     packets_ready             : out std_logic;
     message_linear_x_valid    : out std_logic;
@@ -1466,12 +1350,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat_core is
   signal o_valid           : std_logic;
   signal o_payload         : unsigned(41 downto 0);
   signal orders_ready_25   : std_logic;
-
-  -- Signals that no logic reads, for simulation.
-  signal stall_newest    : std_logic;
-  signal stall_newest_38 : std_logic;
-  signal zero_length     : std_logic;
-  signal zero_length_40  : std_logic;
 begin
 
   buffer_sig : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core_buffer
@@ -1549,15 +1427,14 @@ begin
       message_angular_z_payload => message_angular_z_payload
     );
 
-  stall_newest <= '0';
-  stall_newest_38 <= '0';
-  zero_length <= '0';
-  zero_length_40 <= '0';
-
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_deserializer of the Amaranth design.
 -- Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
+--
+-- The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
+-- rising edge of `aclk`; one cycle of reset discards all packets and messages inside. A last beat
+-- without any ones in ``tkeep`` adds no bytes, so it can end an empty packet.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -1601,45 +1478,23 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_flat is
 
   -- Combinational signals.
-  signal linear_x_data_i       : unsigned(63 downto 0);
-  signal linear_y_data_i       : unsigned(63 downto 0);
-  signal linear_z_data_i       : unsigned(63 downto 0);
-  signal angular_x_data_i      : unsigned(63 downto 0);
-  signal angular_y_data_i      : unsigned(63 downto 0);
-  signal angular_z_data_i      : unsigned(63 downto 0);
-  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload        : unsigned(2 downto 0);
-  signal rst                   : std_logic;
-  signal and_6                 : std_logic;
-  signal and_9                 : std_logic;
-  signal and_12                : std_logic;
-  signal and_22                : std_logic;
-  signal packets_payload_count : unsigned(3 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal packets_valid             : std_logic;
-  signal packets_ready             : std_logic;
-  signal status_valid              : std_logic;
-  signal status_ready              : std_logic;
   signal message_linear_x_payload  : unsigned(63 downto 0);
-  signal message_linear_x_valid    : std_logic;
-  signal message_linear_x_ready    : std_logic;
   signal message_linear_y_payload  : unsigned(63 downto 0);
-  signal message_linear_y_valid    : std_logic;
-  signal message_linear_y_ready    : std_logic;
   signal message_linear_z_payload  : unsigned(63 downto 0);
-  signal message_linear_z_valid    : std_logic;
-  signal message_linear_z_ready    : std_logic;
   signal message_angular_x_payload : unsigned(63 downto 0);
-  signal message_angular_x_valid   : std_logic;
-  signal message_angular_x_ready   : std_logic;
   signal message_angular_y_payload : unsigned(63 downto 0);
-  signal message_angular_y_valid   : std_logic;
-  signal message_angular_y_ready   : std_logic;
   signal message_angular_z_payload : unsigned(63 downto 0);
-  signal message_angular_z_valid   : std_logic;
-  signal message_angular_z_ready   : std_logic;
-  signal packets_payload           : unsigned(68 downto 0);
+  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
+  signal status_payload            : unsigned(2 downto 0);
+  signal rst                       : std_logic;
+  signal tkeep_begins_with_1       : std_logic;
+  signal tkeep_begins_with_2       : std_logic;
+  signal tkeep_begins_with_3       : std_logic;
+  signal tkeep_begins_with_4       : std_logic;
+  signal tkeep_begins_with_5       : std_logic;
+  signal tkeep_begins_with_6       : std_logic;
+  signal tkeep_begins_with_7       : std_logic;
+  signal packets_payload_count     : unsigned(3 downto 0);
 begin
 
   core : entity work.geometry_msgs_msg_twist_cdr_8_deserializer_flat_core
@@ -1666,56 +1521,35 @@ begin
       message_angular_z_valid       => angular_z_valid,
       status_valid                  => m_axis_status_tvalid,
       status_payload                => status_payload,
-      message_linear_x_payload      => linear_x_data_i,
-      message_linear_y_payload      => linear_y_data_i,
-      message_linear_z_payload      => linear_z_data_i,
-      message_angular_x_payload     => angular_x_data_i,
-      message_angular_y_payload     => angular_y_data_i,
-      message_angular_z_payload     => angular_z_data_i
+      message_linear_x_payload      => message_linear_x_payload,
+      message_linear_y_payload      => message_linear_y_payload,
+      message_linear_z_payload      => message_linear_z_payload,
+      message_angular_x_payload     => message_angular_x_payload,
+      message_angular_y_payload     => message_angular_y_payload,
+      message_angular_z_payload     => message_angular_z_payload
     );
 
   rst <= not aresetn;
-  and_6 <= (and unsigned(s_axis_tkeep(2 downto 0))) and not s_axis_tkeep(3);
-  and_9 <= (and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5);
-  and_12 <= (and unsigned(s_axis_tkeep(6 downto 0))) and not s_axis_tkeep(7);
-  and_22 <= (and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6);
-  packets_payload_count <= (and unsigned(s_axis_tkeep)) &
-      (((and unsigned(s_axis_tkeep(3 downto 0))) and not s_axis_tkeep(4)) or and_9 or and_22 or
-      and_12) & (((and unsigned(s_axis_tkeep(1 downto 0))) and not s_axis_tkeep(2)) or and_6 or
-      and_22 or and_12) & ((s_axis_tkeep(0) and not s_axis_tkeep(1)) or and_6 or and_9 or
-      and_12) when s_axis_tlast = '1' else "1000";
+  tkeep_begins_with_1 <= s_axis_tkeep(0) and not s_axis_tkeep(1);
+  tkeep_begins_with_2 <= (and unsigned(s_axis_tkeep(1 downto 0))) and not s_axis_tkeep(2);
+  tkeep_begins_with_3 <= (and unsigned(s_axis_tkeep(2 downto 0))) and not s_axis_tkeep(3);
+  tkeep_begins_with_4 <= (and unsigned(s_axis_tkeep(3 downto 0))) and not s_axis_tkeep(4);
+  tkeep_begins_with_5 <= (and unsigned(s_axis_tkeep(4 downto 0))) and not s_axis_tkeep(5);
+  tkeep_begins_with_6 <= (and unsigned(s_axis_tkeep(5 downto 0))) and not s_axis_tkeep(6);
+  tkeep_begins_with_7 <= (and unsigned(s_axis_tkeep(6 downto 0))) and not s_axis_tkeep(7);
+  packets_payload_count <= (and unsigned(s_axis_tkeep)) & (tkeep_begins_with_4 or
+      tkeep_begins_with_5 or tkeep_begins_with_6 or tkeep_begins_with_7) & (tkeep_begins_with_2 or
+      tkeep_begins_with_3 or tkeep_begins_with_6 or tkeep_begins_with_7) & (tkeep_begins_with_1 or
+      tkeep_begins_with_3 or tkeep_begins_with_5 or tkeep_begins_with_7) when s_axis_tlast =
+      '1' else "1000";
 
   m_axis_status_tdata <= std_logic_vector(resize(status_payload, 8));
 
-  linear_x_data <= std_logic_vector(linear_x_data_i);
-  linear_y_data <= std_logic_vector(linear_y_data_i);
-  linear_z_data <= std_logic_vector(linear_z_data_i);
-  angular_x_data <= std_logic_vector(angular_x_data_i);
-  angular_y_data <= std_logic_vector(angular_y_data_i);
-  angular_z_data <= std_logic_vector(angular_z_data_i);
-
-  packets_valid <= s_axis_tvalid;
-  packets_ready <= s_axis_tready;
-  status_valid <= m_axis_status_tvalid;
-  status_ready <= m_axis_status_tready;
-  message_linear_x_payload <= linear_x_data_i;
-  message_linear_x_valid <= linear_x_valid;
-  message_linear_x_ready <= linear_x_ready;
-  message_linear_y_payload <= linear_y_data_i;
-  message_linear_y_valid <= linear_y_valid;
-  message_linear_y_ready <= linear_y_ready;
-  message_linear_z_payload <= linear_z_data_i;
-  message_linear_z_valid <= linear_z_valid;
-  message_linear_z_ready <= linear_z_ready;
-  message_angular_x_payload <= angular_x_data_i;
-  message_angular_x_valid <= angular_x_valid;
-  message_angular_x_ready <= angular_x_ready;
-  message_angular_y_payload <= angular_y_data_i;
-  message_angular_y_valid <= angular_y_valid;
-  message_angular_y_ready <= angular_y_ready;
-  message_angular_z_payload <= angular_z_data_i;
-  message_angular_z_valid <= angular_z_valid;
-  message_angular_z_ready <= angular_z_ready;
-  packets_payload <= s_axis_tlast & packets_payload_count & unsigned(s_axis_tdata);
+  linear_x_data <= std_logic_vector(message_linear_x_payload);
+  linear_y_data <= std_logic_vector(message_linear_y_payload);
+  linear_z_data <= std_logic_vector(message_linear_z_payload);
+  angular_x_data <= std_logic_vector(message_angular_x_payload);
+  angular_y_data <= std_logic_vector(message_angular_y_payload);
+  angular_z_data <= std_logic_vector(message_angular_z_payload);
 
 end architecture;

@@ -4,6 +4,11 @@
 -- What each port means: manifest.json.
 -- Module geometry_msgs_msg_twist_cdr_8_deserializer_record_flat.record of the Amaranth design.
 -- RecordReader: Join the leaves of a message that have a fixed size into one stream of records.
+--
+-- A record is offered when all of its leaves are valid; latency 0. `record.valid` depends
+-- combinationally on the leaves' `valid`, and their `ready` on `record.ready`. Arrays of more than
+-- one transfer are collected in registers. Such an array of the next message waits until the
+-- record is taken.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -32,35 +37,19 @@ entity geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record is
 end entity;
 
 architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat_record is
-
-  -- Signals that no logic reads, for simulation.
-  signal taken                   : std_logic;
-  signal message_linear_y_ready  : std_logic;
-  signal message_linear_z_ready  : std_logic;
-  signal message_angular_x_ready : std_logic;
-  signal message_angular_y_ready : std_logic;
-  signal message_angular_z_ready : std_logic;
-  signal record_payload          : unsigned(383 downto 0);
 begin
 
   record_valid <= message_linear_x_valid and message_linear_y_valid and message_linear_z_valid and
       message_angular_x_valid and message_angular_y_valid and message_angular_z_valid;
   message_linear_x_ready <= record_valid and record_ready;
 
-  taken <= message_linear_x_ready;
-  message_linear_y_ready <= message_linear_x_ready;
-  message_linear_z_ready <= message_linear_x_ready;
-  message_angular_x_ready <= message_linear_x_ready;
-  message_angular_y_ready <= message_linear_x_ready;
-  message_angular_z_ready <= message_linear_x_ready;
-  record_payload <= message_angular_z_payload & message_angular_y_payload &
-      message_angular_x_payload & message_linear_z_payload & message_linear_y_payload &
-      message_linear_x_payload;
-
 end architecture;
 
 -- Module geometry_msgs_msg_twist_cdr_8_deserializer_record_flat of the Amaranth design.
 -- RecordTop: An instance of a converter, with AXI4-Stream and one vector on its message side.
+--
+-- The latency is the converter's; see `RecordReader` and `RecordWriter` for the paths between
+-- ``msg_valid`` and ``msg_ready``. Clock and reset are those of Top.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -103,15 +92,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_deserializer_record_flat is
   signal message_angular_y_valid  : std_logic;
   signal record_payload_angular_z : std_logic_vector(63 downto 0);
   signal message_angular_z_valid  : std_logic;
-
-  -- Signals that no logic reads, for simulation.
-  signal record_payload          : unsigned(383 downto 0);
-  signal record_valid            : std_logic;
-  signal record_ready            : std_logic;
-  signal message_linear_z_ready  : std_logic;
-  signal message_angular_x_ready : std_logic;
-  signal message_angular_y_ready : std_logic;
-  signal message_angular_z_ready : std_logic;
 
   component geometry_msgs_msg_twist_cdr_8_deserializer_flat is
     port (
@@ -204,15 +184,5 @@ begin
       unsigned(record_payload_angular_y) & unsigned(record_payload_angular_x) &
       unsigned(record_payload_linear_z) & unsigned(record_payload_linear_y) &
       unsigned(record_payload_linear_x)));
-
-  record_payload <= unsigned(record_payload_angular_z) & unsigned(record_payload_angular_y) &
-      unsigned(record_payload_angular_x) & unsigned(record_payload_linear_z) &
-      unsigned(record_payload_linear_y) & unsigned(record_payload_linear_x);
-  record_valid <= msg_valid;
-  record_ready <= msg_ready;
-  message_linear_z_ready <= message_linear_y_ready;
-  message_angular_x_ready <= message_linear_y_ready;
-  message_angular_y_ready <= message_linear_y_ready;
-  message_angular_z_ready <= message_linear_y_ready;
 
 end architecture;

@@ -2,7 +2,16 @@
 -- lyrical, wire cdr, bus of 8 bytes, messages of at most 16777216 bytes
 -- definition (SHA-256): f3c5214cf198c004c7af8f0d4f3458f1c32eed4081e18a1527a25d1c0b9ee20a
 -- What each port means: manifest.json.
--- Steps, as `firm-hdl plan --program` prints and explains them:
+-- Steps, as `firm-hdl plan --program` prints them.
+-- One line a step: its number and name, what it takes, and where it leads. A step is one cycle.
+-- "map": bytes at fixed places, at most two bus words. "items": a bus word of a string or an
+-- array, which is a run of them. "rest": the last items of a run, which the next step takes
+-- before its map; "rest x 8": of 8 bytes each. "lanes": the bytes of the bus, from 0 on. "unit
+-- 4": bytes start and end at multiples of 4. "body": the step after a length that more than a
+-- rest follows. "level 0": the outermost sequence of elements; "while level 0": while it has
+-- elements left. "to 2 (+8)": the last byte of step 2 is 8 bytes after that of this step; with
+-- "align 4 | 3", then down to a multiple of 4, and 3 more: from byte 21, "+6, align 4 | 3" leads
+-- to byte 27. "a.length:0..3": bytes 0 to 3 of a leaf, from the first lane on.
 -- serializer: start 0, items from lane 0, unit 8, map from lane 0, unit 4, at most 3 beats a
 --       state
 --   0 linear_x: map of 8; begins linear.x; map = 00 01 00 00 linear.x:0..3; to 1
@@ -12,9 +21,21 @@
 --   4 angular_x: map of 8; angular.x; begins angular.y; map = angular.x:4..7 angular.y:0..3; to 5
 --   5 angular_y: map of 12 in two words; angular.y angular.z; items = angular.y:4..7
 --       angular.z:0..3; map = angular.z:4..7; to end
+-- A status has 3 bits inside, and 8 at its ports, as the constants of firm_hdl_types_pkg.
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer.core.collector of the Amaranth design.
 -- Collector: Take the leaves of each state of a program, and put them into two words.
--- 21 registers at rising_edge(aclk), synchronous reset rst = '1'.
+--
+-- Leaves are taken in wire order, each as soon as it is offered. A length is decoded in the cycle
+-- before it is taken, so it is taken one cycle after it is offered at the earliest. Latency 1
+-- cycle from the last leaf of a state to the state's words. Throughput one state per cycle:
+--
+--     cycle              | 0        | 1         | 2
+--     length.valid       | 1        | 1         |
+--     known              |          | 1         |
+--     length.ready       |          | 1         |
+--     complete           |          | 1         |
+--     words.valid        |          |           | 1
+-- 20 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 4 registers at rising_edge(aclk), no reset.
 
 library ieee;
@@ -46,8 +67,10 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector is
     message_angular_x_ready   : out std_logic;
     message_angular_y_ready   : out std_logic;
     message_angular_z_ready   : out std_logic;
-    port_537_0                : out unsigned(127 downto 0);
-    port_541_0                : out unsigned(32 downto 0);
+    words_payload_0           : out unsigned(127 downto 0);  -- bits: items(63:0) map(127:64)
+    -- bits: items_bytes(3:0) map_bytes(7:4) two_word_map(8) to_map(13:9) map_mask(16:14)
+    -- to_end(22:17) end_mask(25:23) max_beats(28:26) last(29) empty(30) waits(31) error(32)
+    words_payload_128         : out unsigned(32 downto 0);
     status_valid              : out std_logic;
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
     status_payload            : out unsigned(2 downto 0);
@@ -62,93 +85,64 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
   constant STATUS_OK : unsigned(2 downto 0) := "000";
 
   -- Registers.
-  signal port_541_0_q     : unsigned(32 downto 0) := (others => '0');
-  signal status_valid_q   : std_logic := '0';
+  -- bits as of words_payload_128_q
+  signal words_payload_128_q : unsigned(32 downto 0) := (others => '0');
+  signal status_valid_q      : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal status_payload_q : unsigned(2 downto 0) := (others => '0');
-  signal words_valid_q    : std_logic := '0';
-  signal served_0         : std_logic := '0';
-  signal served_1         : std_logic := '0';
+  signal status_payload_q    : unsigned(2 downto 0) := (others => '0');
+  signal words_valid_q       : std_logic := '0';
+  signal served_0            : std_logic := '0';
+  signal served_1            : std_logic := '0';
   -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal error_sig        : unsigned(2 downto 0) := (others => '0');
-  signal items_0          : unsigned(31 downto 0) := (others => '0');
-  signal items_4          : unsigned(31 downto 0) := (others => '0');
-  signal map_0            : unsigned(31 downto 0) := (others => '0');
-  signal map_4            : unsigned(31 downto 0) := (others => '0');
-  signal begun            : std_logic := '0';
-  signal words_last       : std_logic := '1';
-  signal words_less       : std_logic := '0';
-  signal step_linear_x    : std_logic := '1';  -- step 0: map of 8; begins linear.x
-  signal step_linear_x_2  : std_logic := '0';  -- step 1: map of 8; linear.x; begins linear.y
-  signal step_linear_y    : std_logic := '0';  -- step 2: map of 8; linear.y; begins linear.z
-  signal step_linear_z    : std_logic := '0';  -- step 3: map of 8; linear.z; begins angular.x
-  signal step_angular_x   : std_logic := '0';  -- step 4: map of 8; angular.x; begins angular.y
+  signal error_sig           : unsigned(2 downto 0) := (others => '0');
+  signal items_0             : unsigned(31 downto 0) := (others => '0');
+  signal items_4             : unsigned(31 downto 0) := (others => '0');
+  signal map_0               : unsigned(31 downto 0) := (others => '0');
+  signal map_4               : unsigned(31 downto 0) := (others => '0');
+  signal begun               : std_logic := '0';
+  signal words_last          : std_logic := '1';  -- one is left
+  signal step_linear_x       : std_logic := '1';  -- step 0: map of 8; begins linear.x
+  signal step_linear_x_2     : std_logic := '0';  -- step 1: map of 8; linear.x; begins linear.y
+  signal step_linear_y       : std_logic := '0';  -- step 2: map of 8; linear.y; begins linear.z
+  signal step_linear_z       : std_logic := '0';  -- step 3: map of 8; linear.z; begins angular.x
+  signal step_angular_x      : std_logic := '0';  -- step 4: map of 8; angular.x; begins angular.y
   -- step 5: map of 12 in two words; angular.y angular.z
-  signal step_angular_y   : std_logic := '0';
-  signal map_bytes        : unsigned(3 downto 0) := "1000";
-  signal items_bytes      : unsigned(3 downto 0) := (others => '0');
-  signal two_word_map     : std_logic := '0';
-  signal rest             : std_logic := '0';
-  signal has_nul          : std_logic := '0';
+  signal step_angular_y      : std_logic := '0';
+  signal map_bytes           : unsigned(3 downto 0) := "1000";
+  signal items_bytes         : unsigned(3 downto 0) := (others => '0');
+  signal two_word_map        : std_logic := '0';
+  signal rest                : std_logic := '0';
+  signal has_nul             : std_logic := '0';
 
   -- Combinational signals.
-  signal left_linear_x   : std_logic;
-  signal lacks_linear_x  : std_logic;
-  signal left_linear_y   : std_logic;
-  signal lacks_linear_y  : std_logic;
-  signal left_linear_z   : std_logic;
-  signal lacks_linear_z  : std_logic;
-  signal left_angular_x  : std_logic;
-  signal lacks_angular_x : std_logic;
-  signal left_angular_y  : std_logic;
-  signal lacks_angular_y : std_logic;
-  signal left_angular_z  : std_logic;
-  signal lacks_angular_z : std_logic;
-  signal go_angular_z    : std_logic;
-  signal free            : std_logic;
-  signal or_60           : std_logic;
-  signal complete        : std_logic;
-  signal map_size        : unsigned(4 downto 0);
-  signal begins          : std_logic;
-  signal to_map_0        : unsigned(3 downto 0);
-  signal to_exit         : std_logic;
-  signal served_0_next   : std_logic;
-  signal or_120          : std_logic;
-  signal or_133          : unsigned(31 downto 0);
-  signal map_0_next      : unsigned(31 downto 0);
-  signal or_152          : unsigned(31 downto 0);
-  signal add_159         : unsigned(5 downto 0);
-  signal to_end          : unsigned(5 downto 0);
-  signal end_mask        : unsigned(2 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal length_zero             : std_logic;
-  signal length_skips            : std_logic;
-  signal length_over             : std_logic;
-  signal words_payload           : unsigned(160 downto 0);
-  signal to_map                  : unsigned(4 downto 0);
-  signal length_rest             : std_logic;
-  signal length_at_most_one_pass : std_logic;
-  signal words_loads             : std_logic;
-  signal done                    : std_logic;
-  signal ends                    : std_logic;
-  signal go_linear_x             : std_logic;
-  signal go_linear_y             : std_logic;
-  signal go_linear_z             : std_logic;
-  signal go_angular_x            : std_logic;
-  signal go_angular_y            : std_logic;
-  signal items_size              : unsigned(3 downto 0);
-  signal to_body                 : std_logic;
-  signal words_down              : std_logic;
-  signal words_keeps             : std_logic;
-  signal words_is_small          : std_logic;
-  signal words_is_2              : std_logic;
-  signal words_is_3              : std_logic;
-  signal words_is_4              : std_logic;
-  -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
-  signal found                   : unsigned(2 downto 0);
-  signal words_pending           : std_logic;
-  signal words_value             : unsigned(2 downto 0);
+  signal left_linear_x     : std_logic;
+  signal lacks_linear_x    : std_logic;
+  signal left_linear_y     : std_logic;
+  signal lacks_linear_y    : std_logic;
+  signal left_linear_z     : std_logic;
+  signal lacks_linear_z    : std_logic;
+  signal left_angular_x    : std_logic;
+  signal lacks_angular_x   : std_logic;
+  signal left_angular_y    : std_logic;
+  signal lacks_angular_y   : std_logic;
+  signal left_angular_z    : std_logic;
+  signal lacks_angular_z   : std_logic;
+  signal go_angular_z      : std_logic;
+  signal lacks_any         : std_logic;
+  signal free              : std_logic;
+  signal complete          : std_logic;
+  signal serves_0          : std_logic;
+  signal items_0_writes    : std_logic;
+  signal items_4_writes    : std_logic;
+  signal map_0_writes_part : std_logic;
+  signal map_0_writes      : std_logic;
+  signal map_size          : unsigned(4 downto 0);
+  signal begins            : std_logic;
+  signal to_map_0          : unsigned(3 downto 0);
+  signal most_bytes        : unsigned(7 downto 0);
+  signal moves_on          : std_logic;
+  signal to_end            : unsigned(5 downto 0);
+  signal end_mask          : unsigned(2 downto 0);
 begin
 
   left_linear_x <= step_linear_x_2 and not served_0;
@@ -169,33 +163,25 @@ begin
   left_angular_z <= step_angular_y and not served_1;
   lacks_angular_z <= left_angular_z and not message_angular_z_valid;
   go_angular_z <= left_angular_z and message_angular_z_valid and free and not lacks_angular_y;
-  free <= not words_valid_q or words_ready;
-  or_60 <= lacks_linear_x or lacks_linear_y or lacks_linear_z or lacks_angular_x or
+  lacks_any <= lacks_linear_x or lacks_linear_y or lacks_linear_z or lacks_angular_x or
       lacks_angular_y or lacks_angular_z or (step_linear_x and not message_linear_x_valid) or
       (step_linear_x_2 and not message_linear_y_valid) or (step_linear_y and
       not message_linear_z_valid) or (step_linear_z and not message_angular_x_valid) or
       (step_angular_x and not message_angular_y_valid);
-  complete <= free and not or_60 and (not step_angular_y or not status_valid_q or status_ready);
+  free <= not words_valid_q or words_ready;
+  complete <= free and not lacks_any and (not step_angular_y or not status_valid_q or status_ready);
+  serves_0 <= message_linear_x_ready or message_linear_y_ready or message_linear_z_ready or
+      message_angular_x_ready or message_angular_y_ready;
+  items_0_writes <= free and not (step_angular_y and served_0);
+  items_4_writes <= free and not (step_angular_y and served_1);
+  map_0_writes_part <= ((step_linear_x_2 or step_linear_y or step_linear_z or step_angular_x) and
+      served_0) or (step_angular_y and served_1);
+  map_0_writes <= free and not map_0_writes_part;
   map_size <= resize(map_bytes, 5) + mux(two_word_map, "1000", "0000");
   begins <= begun or (or items_bytes) or (or map_bytes);
   to_map_0 <= (others => '0') when two_word_map = '1' else items_bytes;
-  to_exit <= complete and not step_angular_y;
-  served_0_next <= (served_0 or message_linear_x_ready or message_linear_y_ready or
-      message_linear_z_ready or message_angular_x_ready or message_angular_y_ready) and
-      not complete;
-  or_120 <= ((step_linear_x_2 or step_linear_y or step_linear_z or step_angular_x) and served_0) or
-      (step_angular_y and served_1);
-  or_133 <= mux(step_linear_x, x"00000100", x"00000000") or mux(step_linear_x_2,
-      message_linear_x_payload(63 downto 32), x"00000000") or mux(step_linear_y,
-      message_linear_y_payload(63 downto 32), x"00000000") or mux(step_linear_z,
-      message_linear_z_payload(63 downto 32), x"00000000");
-  map_0_next <= or_133 or mux(step_angular_x, message_angular_x_payload(63 downto 32),
-      x"00000000") or mux(step_angular_y, message_angular_z_payload(63 downto 32), x"00000000");
-  or_152 <= mux(step_linear_x, message_linear_x_payload(31 downto 0), x"00000000") or
-      mux(step_linear_x_2, message_linear_y_payload(31 downto 0), x"00000000") or mux(step_linear_y,
-      message_linear_z_payload(31 downto 0), x"00000000") or mux(step_linear_z,
-      message_angular_x_payload(31 downto 0), x"00000000");
-  add_159 <= resize(to_map_0, 5) + to_end + 7;
+  most_bytes <= resize(resize(to_map_0, 7) + to_end, 8) + 7;
+  moves_on <= complete and not step_angular_y;
 
   to_end <= mux(begins, resize(map_size, 6) + 7, "001000") when step_angular_y = '1' else
             resize(map_size, 6);
@@ -207,7 +193,7 @@ begin
   begin
     if rising_edge(aclk) then
       if rst = '1' then
-        port_541_0_q <= (others => '0');
+        words_payload_128_q <= (others => '0');
         served_0 <= '0';
         served_1 <= '0';
         error_sig <= (others => '0');
@@ -216,7 +202,6 @@ begin
         begun <= '0';
         words_valid_q <= '0';
         words_last <= '1';
-        words_less <= '0';
         step_linear_x <= '1';
         step_linear_x_2 <= '0';
         step_linear_y <= '0';
@@ -230,18 +215,18 @@ begin
         has_nul <= '0';
       else
         if free = '1' then
-          port_541_0_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
+          words_payload_128_q(13 downto 0) <= resize(unsigned'(to_map_0 & two_word_map & map_bytes &
               items_bytes), 14);
-          port_541_0_q(28 downto 26) <= add_159(5 downto 3);
-          port_541_0_q(25 downto 14) <= end_mask & to_end & "000";
-          port_541_0_q(30) <= not begins;
+          words_payload_128_q(28 downto 26) <= most_bytes(5 downto 3);
+          words_payload_128_q(25 downto 14) <= end_mask & to_end & "000";
+          words_payload_128_q(30) <= not begins;
           words_valid_q <= complete;
         end if;
         if free = '1' then
-          port_541_0_q(29) <= step_angular_y;
-          port_541_0_q(32 downto 31) <= to_std_logic(error_sig /= STATUS_OK) & '0';
+          words_payload_128_q(29) <= step_angular_y;
+          words_payload_128_q(32 downto 31) <= to_std_logic(error_sig /= STATUS_OK) & '0';
         end if;
-        served_0 <= served_0_next;
+        served_0 <= (served_0 or serves_0) and not complete;
         served_1 <= (served_1 or go_angular_z) and not complete;
         if complete = '1' and step_angular_y = '1' then
           error_sig <= STATUS_OK;
@@ -283,7 +268,6 @@ begin
           end if;
         end if;
         words_last <= words_last;
-        words_less <= words_less;
       end if;
     end if;
   end process;
@@ -291,60 +275,49 @@ begin
   p_aclk_2 : process (aclk)
   begin
     if rising_edge(aclk) then
-      if free = '1' and (step_angular_y = '0' or served_0 = '0') then
+      if items_0_writes = '1' then
         items_0 <= message_angular_y_payload(63 downto 32);
       end if;
-      if free = '1' and (step_angular_y = '0' or served_1 = '0') then
+      if items_4_writes = '1' then
         items_4 <= message_angular_z_payload(31 downto 0);
       end if;
-      if free = '1' and or_120 = '0' then
-        map_0 <= map_0_next;
+      if map_0_writes = '1' then
+        map_0 <= mux(step_linear_x, x"00000100", x"00000000") or mux(step_linear_x_2,
+            message_linear_x_payload(63 downto 32), x"00000000") or mux(step_linear_y,
+            message_linear_y_payload(63 downto 32), x"00000000") or mux(step_linear_z,
+            message_linear_z_payload(63 downto 32), x"00000000") or mux(step_angular_x,
+            message_angular_x_payload(63 downto 32), x"00000000") or mux(step_angular_y,
+            message_angular_z_payload(63 downto 32), x"00000000");
       end if;
       if free = '1' then
-        map_4 <= or_152 or mux(step_angular_x, message_angular_y_payload(31 downto 0), x"00000000");
+        map_4 <= mux(step_linear_x, message_linear_x_payload(31 downto 0), x"00000000") or
+            mux(step_linear_x_2, message_linear_y_payload(31 downto 0), x"00000000") or
+            mux(step_linear_y, message_linear_z_payload(31 downto 0), x"00000000") or
+            mux(step_linear_z, message_angular_x_payload(31 downto 0), x"00000000") or
+            mux(step_angular_x, message_angular_y_payload(31 downto 0), x"00000000");
       end if;
     end if;
   end process;
 
-  port_537_0 <= map_4 & map_0 & items_4 & items_0;
+  words_payload_0 <= map_4 & map_0 & items_4 & items_0;
   message_angular_z_ready <= go_angular_z;
 
-  port_541_0 <= port_541_0_q;
+  words_payload_128 <= words_payload_128_q;
   status_valid <= status_valid_q;
   status_payload <= status_payload_q;
   words_valid <= words_valid_q;
-
-  length_zero <= '0';
-  length_skips <= '0';
-  length_over <= '0';
-  words_payload <= port_541_0_q & map_4 & map_0 & items_4 & items_0;
-  to_map <= resize(to_map_0, 5);
-  length_rest <= '0';
-  length_at_most_one_pass <= '0';
-  words_loads <= '0';
-  done <= '1';
-  ends <= step_angular_y;
-  go_linear_x <= message_linear_x_ready;
-  go_linear_y <= message_linear_y_ready;
-  go_linear_z <= message_linear_z_ready;
-  go_angular_x <= message_angular_x_ready;
-  go_angular_y <= message_angular_y_ready;
-  items_size <= items_bytes;
-  to_body <= '0';
-  words_down <= '0';
-  words_keeps <= '1';
-  words_is_small <= '1';
-  words_is_2 <= '0';
-  words_is_3 <= '0';
-  words_is_4 <= '0';
-  found <= error_sig;
-  words_pending <= '0';
-  words_value <= (others => '0');
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer.core.packer of the Amaranth design.
 -- Packer: Write words to a ring of beats, and send the beats that are complete.
+--
+-- Throughput two words in and one beat out per cycle; latency 3 cycles:
+--
+--     cycle          | 0                  | 1            | 2          | 3
+--     words          | valid, ready       |              |            |
+--     they are       | placed and rotated | written      |            |
+--     beat           |                    | complete     | read       | packets.valid
 -- 20 registers at rising_edge(aclk), synchronous reset rst = '1'.
 -- 4 registers at rising_edge(aclk), no reset.
 
@@ -359,12 +332,14 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
     rst               : in  std_logic;
     aclk              : in  std_logic;
     packets_ready     : in  std_logic;
-    words_payload_0   : in  unsigned(127 downto 0);
+    words_payload_0   : in  unsigned(127 downto 0);  -- bits: items(63:0) map(127:64)
+    -- bits: items_bytes(3:0) map_bytes(7:4) two_word_map(8) to_map(13:9) map_mask(16:14)
+    -- to_end(22:17) end_mask(25:23) max_beats(28:26) last(29) empty(30) waits(31) error(32)
     words_payload_128 : in  unsigned(32 downto 0);
     words_valid       : in  std_logic;
     words_ready       : out std_logic;
     packets_valid     : out std_logic;
-    packets_payload   : out unsigned(68 downto 0);
+    packets_payload   : out unsigned(68 downto 0);  -- bits: data(63:0) count(67:64) last(68)
     error_sig         : out std_logic
   );
 end entity;
@@ -372,9 +347,10 @@ end entity;
 architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 
   -- Registers.
-  signal words_ready_q      : std_logic := '1';
+  signal ready              : std_logic := '1';
   signal packets_valid_q    : std_logic := '0';
-  signal packets_payload_q  : unsigned(68 downto 0) := (others => '0');
+  -- bits: data(63:0) count(67:64) last(68)
+  signal payload            : unsigned(68 downto 0) := (others => '0');
   signal error_sig_q        : std_logic := '0';
   signal writes             : std_logic := '0';
   signal items_0_write_data : unsigned(63 downto 0) := (others => '0');
@@ -399,16 +375,26 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
 
   -- Combinational signals.
   signal takes                      : std_logic;
+  signal map_beat                   : unsigned(3 downto 0);
   signal total                      : unsigned(6 downto 0);
-  signal total_6                    : unsigned(6 downto 0);
+  signal total_8                    : unsigned(6 downto 0);
   signal base                       : unsigned(6 downto 0);
   signal end_sig                    : unsigned(6 downto 0);
-  signal add_13                     : unsigned(3 downto 0);
   signal map_end                    : unsigned(6 downto 0);
+  signal items_at                   : unsigned(6 downto 0);
   signal newest                     : unsigned(3 downto 0);
   signal room                       : unsigned(3 downto 0);
   signal ends_write_addr            : unsigned(2 downto 0);
   signal ends_write_en              : std_logic;
+  signal commits                    : std_logic;
+  signal frees_slot_0               : std_logic;
+  signal frees_slot_1               : std_logic;
+  signal frees_slot_2               : std_logic;
+  signal frees_slot_3               : std_logic;
+  signal frees_slot_4               : std_logic;
+  signal frees_slot_5               : std_logic;
+  signal frees_slot_6               : std_logic;
+  signal frees_slot_7               : std_logic;
   signal items_used_0               : std_logic;
   signal items_0_written            : std_logic;
   signal map_used_0                 : std_logic;
@@ -417,15 +403,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal map_4_written              : std_logic;
   signal reads                      : std_logic;
   signal is_last                    : std_logic;
-  signal and_43                     : std_logic;
-  signal and_46                     : std_logic;
-  signal and_50                     : std_logic;
-  signal and_54                     : std_logic;
-  signal and_58                     : std_logic;
-  signal and_62                     : std_logic;
-  signal and_66                     : std_logic;
-  signal and_70                     : std_logic;
-  signal and_74                     : std_logic;
   signal ends_read_data             : unsigned(4 downto 0);
   signal items_0_read_data          : unsigned(63 downto 0);
   signal map_0_read_data            : unsigned(31 downto 0);
@@ -447,32 +424,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal ends_read_data_count       : unsigned(3 downto 0);
   signal ends_read_data_error       : std_logic;
 
-  -- Signals that no logic reads, for simulation.
-  signal words_payload      : unsigned(160 downto 0);
-  signal map_at             : unsigned(6 downto 0);
-  signal ready              : std_logic;
-  signal items_index_0      : unsigned(2 downto 0);
-  signal items_slot_0       : unsigned(2 downto 0);
-  signal items_0_write_addr : unsigned(2 downto 0);
-  signal items_placed       : unsigned(63 downto 0);
-  signal items_0_write_en   : std_logic;
-  signal items_0_read_addr  : unsigned(2 downto 0);
-  signal map_index_0        : unsigned(2 downto 0);
-  signal map_slot_0         : unsigned(2 downto 0);
-  signal map_0_write_addr   : unsigned(2 downto 0);
-  signal map_0_write_data   : unsigned(31 downto 0);
-  signal map_0_write_en     : std_logic;
-  signal map_0_read_addr    : unsigned(2 downto 0);
-  signal map_index_4        : unsigned(2 downto 0);
-  signal map_slot_4         : unsigned(2 downto 0);
-  signal map_4_write_addr   : unsigned(2 downto 0);
-  signal map_4_write_data   : unsigned(31 downto 0);
-  signal map_4_write_en     : std_logic;
-  signal map_4_read_addr    : unsigned(2 downto 0);
-  signal ends_read_addr     : unsigned(2 downto 0);
-  signal payload            : unsigned(68 downto 0);
-  signal ends_write_data    : unsigned(4 downto 0);
-
   type ends_array is array (0 to 7) of unsigned(4 downto 0);
   signal ends : ends_array := (others => (others => '0'));
 
@@ -486,19 +437,29 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core_packer is
   signal map_4 : map_4_array := (others => (others => '0'));
 begin
 
-  takes <= words_valid and words_ready_q;
+  takes <= words_valid and ready;
+  map_beat <= base(6 downto 3) + words_payload_two_word_map;
   total <= at + words_payload_to_map;
-  total_6 <= base + words_payload_to_end;
+  total_8 <= base + words_payload_to_end;
   base <= (total and not resize(words_payload_map_mask, 7)) or resize(words_payload_map_mask and
       "100", 7);
-  end_sig <= (total_6 and not resize(words_payload_end_mask, 7)) or
+  end_sig <= (total_8 and not resize(words_payload_end_mask, 7)) or
       resize(words_payload_end_mask and mux(words_payload_last, "000", "100"), 7);
-  add_13 <= base(6 downto 3) + words_payload_two_word_map;
-  map_end <= unsigned'(add_13 & base(2 downto 0)) + words_payload_map_bytes;
+  map_end <= unsigned'(map_beat & base(2 downto 0)) + words_payload_map_bytes;
+  items_at <= base when words_payload_two_word_map = '1' else at;
   newest <= at(6 downto 3) + mux(takes, words_payload_max_beats, "000");
   room <= bound - newest;
   ends_write_addr <= complete_next(2 downto 0) - 1;
   ends_write_en <= writes and ends_packet;
+  commits <= writes and not waits;
+  frees_slot_0 <= '1' when reads = '1' and first(2 downto 0) = 0 else '0';
+  frees_slot_1 <= '1' when reads = '1' and first(2 downto 0) = 1 else '0';
+  frees_slot_2 <= '1' when reads = '1' and first(2 downto 0) = 2 else '0';
+  frees_slot_3 <= '1' when reads = '1' and first(2 downto 0) = 3 else '0';
+  frees_slot_4 <= '1' when reads = '1' and first(2 downto 0) = 4 else '0';
+  frees_slot_5 <= '1' when reads = '1' and first(2 downto 0) = 5 else '0';
+  frees_slot_6 <= '1' when reads = '1' and first(2 downto 0) = 6 else '0';
+  frees_slot_7 <= '1' when reads = '1' and first(2 downto 0) = 7 else '0';
   items_used_0 <= '1' when writes = '1' and items_size > 0 else '0';
   items_0_written <= lsb(resize(shift_right(items_0_has, to_integer(first(2 downto 0))), 1));
   map_used_0 <= '1' when writes = '1' and map_size > 0 else '0';
@@ -507,15 +468,6 @@ begin
   map_4_written <= lsb(resize(shift_right(map_4_has, to_integer(first(2 downto 0))), 1));
   reads <= '1' when complete /= first and (packets_valid_q = '0' or packets_ready = '1') else '0';
   is_last <= lsb(resize(shift_right(last, to_integer(first(2 downto 0))), 1));
-  and_43 <= writes and not waits;
-  and_46 <= '1' when reads = '1' and first(2 downto 0) = 0 else '0';
-  and_50 <= '1' when reads = '1' and first(2 downto 0) = 1 else '0';
-  and_54 <= '1' when reads = '1' and first(2 downto 0) = 2 else '0';
-  and_58 <= '1' when reads = '1' and first(2 downto 0) = 3 else '0';
-  and_62 <= '1' when reads = '1' and first(2 downto 0) = 4 else '0';
-  and_66 <= '1' when reads = '1' and first(2 downto 0) = 5 else '0';
-  and_70 <= '1' when reads = '1' and first(2 downto 0) = 6 else '0';
-  and_74 <= '1' when reads = '1' and first(2 downto 0) = 7 else '0';
 
   process (aclk)
   begin
@@ -576,7 +528,7 @@ begin
         failed <= '0';
         waits <= '0';
         last_bytes <= (others => '0');
-        words_ready_q <= '1';
+        ready <= '1';
         bound <= "0101";
         complete <= (others => '0');
         last <= (others => '0');
@@ -588,13 +540,9 @@ begin
       else
         writes <= takes;
         if takes = '1' then
-          if words_payload_two_word_map = '1' then
-            items_start <= base;
-          else
-            items_start <= at;
-          end if;
+          items_start <= items_at;
           items_size <= words_payload_items_bytes;
-          map_start <= add_13 & base(2 downto 0);
+          map_start <= map_beat & base(2 downto 0);
           map_size <= words_payload_map_bytes;
           at <= end_sig;
           complete_next <= end_sig(6 downto 3);
@@ -607,12 +555,12 @@ begin
             last_bytes <= resize(map_end(2 downto 0) - 1, 4) + 1;
           end if;
         end if;
-        words_ready_q <= not room(3);
+        ready <= not room(3);
         if reads = '1' then
           bound <= bound + 1;
           first <= first + 1;
         end if;
-        if and_43 = '1' then
+        if commits = '1' then
           complete <= complete_next;
           if ends_packet = '1' then
             case ends_write_addr is
@@ -659,122 +607,122 @@ begin
               null;
           end case;
         end if;
-        if and_46 = '1' then
+        if frees_slot_0 = '1' then
           items_0_has(0) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 0 then
           items_0_has(0) <= '1';
         end if;
-        if and_50 = '1' then
+        if frees_slot_1 = '1' then
           items_0_has(1) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 1 then
           items_0_has(1) <= '1';
         end if;
-        if and_54 = '1' then
+        if frees_slot_2 = '1' then
           items_0_has(2) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 2 then
           items_0_has(2) <= '1';
         end if;
-        if and_58 = '1' then
+        if frees_slot_3 = '1' then
           items_0_has(3) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 3 then
           items_0_has(3) <= '1';
         end if;
-        if and_62 = '1' then
+        if frees_slot_4 = '1' then
           items_0_has(4) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 4 then
           items_0_has(4) <= '1';
         end if;
-        if and_66 = '1' then
+        if frees_slot_5 = '1' then
           items_0_has(5) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 5 then
           items_0_has(5) <= '1';
         end if;
-        if and_70 = '1' then
+        if frees_slot_6 = '1' then
           items_0_has(6) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 6 then
           items_0_has(6) <= '1';
         end if;
-        if and_74 = '1' then
+        if frees_slot_7 = '1' then
           items_0_has(7) <= '0';
         elsif items_used_0 = '1' and items_start(5 downto 3) = 7 then
           items_0_has(7) <= '1';
         end if;
-        if and_46 = '1' then
+        if frees_slot_0 = '1' then
           map_0_has(0) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 0 then
           map_0_has(0) <= '1';
         end if;
-        if and_50 = '1' then
+        if frees_slot_1 = '1' then
           map_0_has(1) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 1 then
           map_0_has(1) <= '1';
         end if;
-        if and_54 = '1' then
+        if frees_slot_2 = '1' then
           map_0_has(2) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 2 then
           map_0_has(2) <= '1';
         end if;
-        if and_58 = '1' then
+        if frees_slot_3 = '1' then
           map_0_has(3) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 3 then
           map_0_has(3) <= '1';
         end if;
-        if and_62 = '1' then
+        if frees_slot_4 = '1' then
           map_0_has(4) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 4 then
           map_0_has(4) <= '1';
         end if;
-        if and_66 = '1' then
+        if frees_slot_5 = '1' then
           map_0_has(5) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 5 then
           map_0_has(5) <= '1';
         end if;
-        if and_70 = '1' then
+        if frees_slot_6 = '1' then
           map_0_has(6) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 6 then
           map_0_has(6) <= '1';
         end if;
-        if and_74 = '1' then
+        if frees_slot_7 = '1' then
           map_0_has(7) <= '0';
         elsif map_used_0 = '1' and map_start(5 downto 3) = 7 then
           map_0_has(7) <= '1';
         end if;
-        if and_46 = '1' then
+        if frees_slot_0 = '1' then
           map_4_has(0) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 0 then
           map_4_has(0) <= '1';
         end if;
-        if and_50 = '1' then
+        if frees_slot_1 = '1' then
           map_4_has(1) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 1 then
           map_4_has(1) <= '1';
         end if;
-        if and_54 = '1' then
+        if frees_slot_2 = '1' then
           map_4_has(2) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 2 then
           map_4_has(2) <= '1';
         end if;
-        if and_58 = '1' then
+        if frees_slot_3 = '1' then
           map_4_has(3) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 3 then
           map_4_has(3) <= '1';
         end if;
-        if and_62 = '1' then
+        if frees_slot_4 = '1' then
           map_4_has(4) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 4 then
           map_4_has(4) <= '1';
         end if;
-        if and_66 = '1' then
+        if frees_slot_5 = '1' then
           map_4_has(5) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 5 then
           map_4_has(5) <= '1';
         end if;
-        if and_70 = '1' then
+        if frees_slot_6 = '1' then
           map_4_has(6) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 6 then
           map_4_has(6) <= '1';
         end if;
-        if and_74 = '1' then
+        if frees_slot_7 = '1' then
           map_4_has(7) <= '0';
         elsif map_used_4 = '1' and map_start(5 downto 3) = 7 then
           map_4_has(7) <= '1';
@@ -797,15 +745,15 @@ begin
         map_placed <= words_payload_map;
       end if;
       if reads = '1' then
-        packets_payload_q(63 downto 0) <= (mux(items_0_written, items_0_read_data(63 downto 32),
+        payload(63 downto 0) <= (mux(items_0_written, items_0_read_data(63 downto 32),
             x"00000000") or mux(map_4_written, map_4_read_data, x"00000000")) &
             (mux(items_0_written, items_0_read_data(31 downto 0), x"00000000") or mux(map_0_written,
             map_0_read_data, x"00000000"));
-        packets_payload_q(68) <= is_last;
+        payload(68) <= is_last;
         if is_last = '1' then
-          packets_payload_q(67 downto 64) <= ends_read_data_count;
+          payload(67 downto 64) <= ends_read_data_count;
         else
-          packets_payload_q(67 downto 64) <= "1000";
+          payload(67 downto 64) <= "1000";
         end if;
         error_sig_q <= is_last and ends_read_data_error;
       end if;
@@ -829,40 +777,28 @@ begin
   ends_read_data_count <= ends_read_data(3 downto 0);
   ends_read_data_error <= ends_read_data(4);
 
-  words_ready <= words_ready_q;
+  words_ready <= ready;
   packets_valid <= packets_valid_q;
-  packets_payload <= packets_payload_q;
+  packets_payload <= payload;
   error_sig <= error_sig_q;
-
-  words_payload <= words_payload_128 & words_payload_0;
-  map_at <= add_13 & base(2 downto 0);
-  ready <= words_ready_q;
-  items_index_0 <= (others => '0');
-  items_slot_0 <= items_start(5 downto 3);
-  items_0_write_addr <= items_start(5 downto 3);
-  items_placed <= items_0_write_data;
-  items_0_write_en <= items_used_0;
-  items_0_read_addr <= first(2 downto 0);
-  map_index_0 <= (others => '0');
-  map_slot_0 <= map_start(5 downto 3);
-  map_0_write_addr <= map_start(5 downto 3);
-  map_0_write_data <= map_placed(31 downto 0);
-  map_0_write_en <= map_used_0;
-  map_0_read_addr <= first(2 downto 0);
-  map_index_4 <= "100";
-  map_slot_4 <= map_start(5 downto 3);
-  map_4_write_addr <= map_start(5 downto 3);
-  map_4_write_data <= map_placed(63 downto 32);
-  map_4_write_en <= map_used_4;
-  map_4_read_addr <= first(2 downto 0);
-  ends_read_addr <= first(2 downto 0);
-  payload <= packets_payload_q;
-  ends_write_data <= failed & last_bytes;
 
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer.core of the Amaranth design.
 -- Serializer: Turn messages into packets.
+--
+-- Leaves are taken in wire order, several in one cycle if they are valid. No leaf waits for a
+-- later one. A length is taken one cycle after it is offered at the earliest. The serializer adds
+-- the lengths on the wire, padding and terminators. A beat is valid `LATENCY_CYCLES["serializer"]`
+-- cycles after the last leaf of the step that fills it. The `ready` of a leaf depends
+-- combinationally on its own `valid` and on that of the earlier leaves of the same step; all other
+-- outputs are registers. One clock domain, `sync`; its reset discards all messages and packets
+-- inside.
+--
+-- Each packet ends in one transfer on `status`. A length over its bound is written unchanged, and
+-- as many items are taken as it says. The packet is marked with an error, so that the receiver can
+-- drop it. `length` decides how many items are taken; an `items.last` that disagrees marks the
+-- packet with an error.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -898,6 +834,7 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
     -- 0 OK, 1 TRUNCATED, 2 TRAILING, 3 LENGTH, 4 ENCAPSULATION, 5 STRING, 6 ITEMS
     status_payload            : out unsigned(2 downto 0);
     packets_valid             : out std_logic;
+    -- bits: data(63:0) count(67:64) last(68)
     packets_payload           : out unsigned(68 downto 0);
     packet_error              : out std_logic
   );
@@ -910,11 +847,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat_core is
   signal words_payload_128 : unsigned(32 downto 0);
   signal words_valid       : std_logic;
   signal words_ready       : std_logic;
-
-  -- Signals that no logic reads, for simulation.
-  signal words_payload   : unsigned(160 downto 0);
-  signal words_payload_1 : unsigned(160 downto 0);
-  signal error_sig       : std_logic;
 begin
 
   collector : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core_collector
@@ -940,8 +872,8 @@ begin
       message_angular_x_ready   => message_angular_x_ready,
       message_angular_y_ready   => message_angular_y_ready,
       message_angular_z_ready   => message_angular_z_ready,
-      port_537_0                => words_payload_0,
-      port_541_0                => words_payload_128,
+      words_payload_0           => words_payload_0,
+      words_payload_128         => words_payload_128,
       status_valid              => status_valid,
       status_payload            => status_payload,
       words_valid               => words_valid,
@@ -962,14 +894,14 @@ begin
       error_sig         => packet_error
     );
 
-  words_payload <= words_payload_128 & words_payload_0;
-  words_payload_1 <= words_payload_128 & words_payload_0;
-  error_sig <= packet_error;
-
 end architecture;
 
 -- Module geometry_msgs_msg_Twist_cdr_8_serializer of the Amaranth design.
 -- Top: A converter with AXI4-Stream on its packet side and named ports on its message side.
+--
+-- The top level adds neither registers nor latency. `aresetn` is active low and synchronous to the
+-- rising edge of `aclk`; one cycle of reset discards all packets and messages inside. A last beat
+-- without any ones in ``tkeep`` adds no bytes, so it can end an empty packet.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -1019,31 +951,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_flat is
   signal packets_payload       : unsigned(68 downto 0);
   signal rst                   : std_logic;
   signal packets_payload_count : unsigned(3 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal packet_error              : std_logic;
-  signal packets_valid             : std_logic;
-  signal packets_ready             : std_logic;
-  signal status_valid              : std_logic;
-  signal status_ready              : std_logic;
-  signal message_linear_x_payload  : unsigned(63 downto 0);
-  signal message_linear_x_valid    : std_logic;
-  signal message_linear_x_ready    : std_logic;
-  signal message_linear_y_payload  : unsigned(63 downto 0);
-  signal message_linear_y_valid    : std_logic;
-  signal message_linear_y_ready    : std_logic;
-  signal message_linear_z_payload  : unsigned(63 downto 0);
-  signal message_linear_z_valid    : std_logic;
-  signal message_linear_z_ready    : std_logic;
-  signal message_angular_x_payload : unsigned(63 downto 0);
-  signal message_angular_x_valid   : std_logic;
-  signal message_angular_x_ready   : std_logic;
-  signal message_angular_y_payload : unsigned(63 downto 0);
-  signal message_angular_y_valid   : std_logic;
-  signal message_angular_y_ready   : std_logic;
-  signal message_angular_z_payload : unsigned(63 downto 0);
-  signal message_angular_z_valid   : std_logic;
-  signal message_angular_z_ready   : std_logic;
 begin
 
   core : entity work.geometry_msgs_msg_twist_cdr_8_serializer_flat_core
@@ -1088,29 +995,5 @@ begin
   m_axis_tlast <= packets_payload(68);
   m_axis_status_tdata <= std_logic_vector(resize(status_payload, 8));
   packets_payload_count <= packets_payload(67 downto 64);
-
-  packet_error <= m_axis_tuser;
-  packets_valid <= m_axis_tvalid;
-  packets_ready <= m_axis_tready;
-  status_valid <= m_axis_status_tvalid;
-  status_ready <= m_axis_status_tready;
-  message_linear_x_payload <= unsigned(linear_x_data);
-  message_linear_x_valid <= linear_x_valid;
-  message_linear_x_ready <= linear_x_ready;
-  message_linear_y_payload <= unsigned(linear_y_data);
-  message_linear_y_valid <= linear_y_valid;
-  message_linear_y_ready <= linear_y_ready;
-  message_linear_z_payload <= unsigned(linear_z_data);
-  message_linear_z_valid <= linear_z_valid;
-  message_linear_z_ready <= linear_z_ready;
-  message_angular_x_payload <= unsigned(angular_x_data);
-  message_angular_x_valid <= angular_x_valid;
-  message_angular_x_ready <= angular_x_ready;
-  message_angular_y_payload <= unsigned(angular_y_data);
-  message_angular_y_valid <= angular_y_valid;
-  message_angular_y_ready <= angular_y_ready;
-  message_angular_z_payload <= unsigned(angular_z_data);
-  message_angular_z_valid <= angular_z_valid;
-  message_angular_z_ready <= angular_z_ready;
 
 end architecture;

@@ -5,6 +5,9 @@
 -- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat.record of the Amaranth design.
 -- RecordWriter: Split a stream of records into leaves of a message: the inverse of
 -- :class:`RecordReader`.
+--
+-- All leaves are offered at the same time. The record is taken in the cycle in which the last of
+-- them is taken. Latency 0; `record.ready` depends combinationally on the leaves' `ready`.
 -- 6 registers at rising_edge(aclk), synchronous reset rst = '1'.
 
 library ieee;
@@ -17,7 +20,7 @@ entity geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record is
   port (
     rst                       : in  std_logic;
     aclk                      : in  std_logic;
-    record_payload            : in  unsigned(383 downto 0);
+    record_payload            : in  unsigned(383 downto 0);  -- bits: linear(191:0) angular(383:192)
     record_valid              : in  std_logic;
     message_linear_x_valid    : out std_logic;
     message_linear_y_valid    : out std_logic;
@@ -52,16 +55,13 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat_record 
   signal index_18 : std_logic := '0';
 
   -- Combinational signals.
-  signal and_43                   : std_logic;
+  signal taken_part               : std_logic;
   signal record_payload_linear_x  : unsigned(63 downto 0);
   signal record_payload_linear_y  : unsigned(63 downto 0);
   signal record_payload_linear_z  : unsigned(63 downto 0);
   signal record_payload_angular_x : unsigned(63 downto 0);
   signal record_payload_angular_y : unsigned(63 downto 0);
   signal record_payload_angular_z : unsigned(63 downto 0);
-
-  -- Signals that no logic reads, for simulation.
-  signal record_ready : std_logic;
 begin
 
   message_linear_x_valid <= record_valid and not index;
@@ -70,7 +70,7 @@ begin
   message_angular_x_valid <= record_valid and not index_12;
   message_angular_y_valid <= record_valid and not index_15;
   message_angular_z_valid <= record_valid and not index_18;
-  and_43 <= (index or (to_std_logic(resize(index, 1) = 0) and message_linear_x_valid and
+  taken_part <= (index or (to_std_logic(resize(index, 1) = 0) and message_linear_x_valid and
       message_linear_x_ready)) and (index_6 or (to_std_logic(resize(index_6, 1) = 0) and
       message_linear_y_valid and message_linear_y_ready)) and (index_9 or
       (to_std_logic(resize(index_9, 1) = 0) and message_linear_z_valid and
@@ -79,7 +79,7 @@ begin
       (to_std_logic(resize(index_15, 1) = 0) and message_angular_y_valid and
       message_angular_y_ready)) and (index_18 or (to_std_logic(resize(index_18, 1) = 0) and
       message_angular_z_valid and message_angular_z_ready));
-  taken <= record_valid and and_43;
+  taken <= record_valid and taken_part;
 
   message_linear_x_payload <= record_payload_linear_x when index = '0' else
                               (others => '0');
@@ -151,12 +151,13 @@ begin
   record_payload_angular_y <= record_payload(319 downto 256);
   record_payload_angular_z <= record_payload(383 downto 320);
 
-  record_ready <= taken;
-
 end architecture;
 
 -- Module geometry_msgs_msg_twist_cdr_8_serializer_record_flat of the Amaranth design.
 -- RecordTop: An instance of a converter, with AXI4-Stream and one vector on its message side.
+--
+-- The latency is the converter's; see `RecordReader` and `RecordWriter` for the paths between
+-- ``msg_valid`` and ``msg_ready``. Clock and reset are those of Top.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -205,11 +206,6 @@ architecture rtl of geometry_msgs_msg_twist_cdr_8_serializer_record_flat is
   signal message_angular_x_ready   : std_logic;
   signal message_angular_y_ready   : std_logic;
   signal message_angular_z_ready   : std_logic;
-
-  -- Signals that no logic reads, for simulation.
-  signal record_payload : unsigned(383 downto 0);
-  signal record_valid   : std_logic;
-  signal record_ready   : std_logic;
 
   component geometry_msgs_msg_twist_cdr_8_serializer_flat is
     port (
@@ -307,9 +303,5 @@ begin
     );
 
   rst <= not aresetn;
-
-  record_payload <= unsigned(msg_data);
-  record_valid <= msg_valid;
-  record_ready <= msg_ready;
 
 end architecture;

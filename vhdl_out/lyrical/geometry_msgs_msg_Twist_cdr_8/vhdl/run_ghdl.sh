@@ -19,6 +19,19 @@ if [ ! -f "$here/stimuli.txt" ]; then
   echo "run_ghdl.sh: write packets to $here/stimuli.txt, one per line, in hexadecimal" >&2
   exit 2
 fi
+# A waveform is written where the user is, in the format of its name: .ghw, .vcd or .fst.
+for argument; do
+  shift
+  case $argument in
+    --wave=*.vcd) argument=--vcd=${argument#*=} ;;
+    --wave=*.fst) argument=--fst=${argument#*=} ;;
+  esac
+  case $argument in
+    --wave=/* | --vcd=/* | --fst=/*) ;;
+    --wave=* | --vcd=* | --fst=*) argument=${argument%%=*}=$PWD/${argument#*=} ;;
+  esac
+  set -- "$@" "$argument"
+done
 mkdir -p "$work"
 cd "$work"
 printf '*\n' > .gitignore
