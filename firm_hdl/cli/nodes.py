@@ -117,8 +117,8 @@ def _add_run(command: argparse.ArgumentParser) -> None:
         "--board",
         default="sim",
         metavar="BOARD",
-        help="sim, udp://HOST[:PORT], tcp://HOST:PORT or serial:///dev/DEVICE[?baud=RATE] "
-        "(%(default)s)",
+        help="sim, udp://HOST[:PORT], tcp://HOST:PORT, serial:///dev/DEVICE[?baud=RATE] or "
+        "zynq://UIO/BUFFER (%(default)s)",
     )
     command.add_argument(
         "--graph",

@@ -431,7 +431,7 @@ def _add_board(group: argparse._ArgumentGroup) -> None:
         "--board",
         metavar="BOARD",
         help="send the cases of ts3 through a board that sends them back: sim, udp://HOST[:PORT], "
-        "tcp://HOST:PORT or serial:///dev/DEVICE[?baud=RATE]",
+        "tcp://HOST:PORT, serial:///dev/DEVICE[?baud=RATE] or zynq://UIO/BUFFER",
     )
     group.add_argument(
         "--node",

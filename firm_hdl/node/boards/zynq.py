@@ -8,7 +8,6 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Literal, Protocol
 
 from firm_hdl.node.boards.board import Board, BoardError
@@ -150,7 +149,7 @@ class ZynqBoard(Board):
         """Reset the DMA, and let both channels run."""
         # A reset of one channel resets both.
         registers.write(_AT["MM2S"] + _DMACR, _RESET)
-        if not _becomes(lambda: not registers.read(_AT["MM2S"] + _DMACR) & _RESET):
+        if not _clears(registers, _AT["MM2S"] + _DMACR, _RESET):
             raise BoardError("the reset of the DMA does not end; does its clock run?")
         for channel, at in _AT.items():
             control, status = registers.read(at + _DMACR), registers.read(at + _DMASR)
@@ -162,7 +161,7 @@ class ZynqBoard(Board):
             if status & _SG_INCLUDED:
                 raise BoardError("the DMA has a scatter-gather engine, which has to be left out")
             registers.write(at + _DMACR, _RS | _IOC_IRQ | _ERR_IRQ)
-            if not _becomes(partial(_is_running, registers, at)):
+            if not _clears(registers, at + _DMASR, _HALTED):
                 raise BoardError(f"{channel} of the DMA does not start")
 
     def fileno(self) -> int:
@@ -263,13 +262,9 @@ class ZynqBoard(Board):
         registers.write(at + _LENGTH, size)
 
 
-def _is_running(registers: Registers, channel: int) -> bool:
-    return not registers.read(channel + _DMASR) & _HALTED
-
-
-def _becomes(condition: Callable[[], bool]) -> bool:
-    """Wait for a moment until a condition holds; return whether it does."""
+def _clears(registers: Registers, offset: int, bit: int) -> bool:
+    """Wait for a moment until a bit of a register is 0; return whether it is."""
     end = time.monotonic() + _WAIT_SECONDS
-    while not (holds := condition()) and time.monotonic() < end:
+    while (is_set := bool(registers.read(offset) & bit)) and time.monotonic() < end:
         time.sleep(0.001)
-    return holds
+    return not is_set

@@ -34,13 +34,14 @@ publish:
 
 
 _SMALL = """\
+bus_bytes: 4
 node: chip
 distro: jazzy
 accelerator: firm_hdl.node.loop:Loop
 subscribe:
-  /heard: {type: geometry_msgs/msg/Vector3}
+  /heard: {type: std_msgs/msg/ColorRGBA}
 publish:
-  /said: {type: geometry_msgs/msg/Vector3}
+  /said: {type: std_msgs/msg/ColorRGBA}
 """
 
 
@@ -49,7 +50,7 @@ class Fabric(ModelRegisters):
 
     def __init__(self, chip):
         super().__init__(chip.dma, 16)
-        self.chip, self.resets = chip, chip.dma.resets
+        self.chip = chip
         # Time passes here only, so a bridge must never sleep.
         self.readable, self.writable = os.pipe()
         os.write(self.writable, b"x")
@@ -130,17 +131,16 @@ def fail(chip, made, said, channel, bit, topic, packet):
     assert made.side.on_the_way["DMA errors"] == restarts
 
 
-def test_messages_and_an_error_go_through_driver_dma_and_gateware():
-    """A message has 28 bytes, four beats, and leaves the node in two buffers."""
+def test_messages_go_through_driver_dma_and_gateware():
+    """A message has 20 bytes, five beats, and leaves the node in two buffers."""
     description = read(_SMALL, link="{kind: axi_dma, buffer_bytes: 32}", clock_mhz="1")
     chip, made, said = ready(description, cycles=60)
-    topic = description.topics[0]
+    topic, *_ = description.topics
     sent = packets_of(topic.store("in").message, 3)
     made.graph.say(topic, *sent)
     assert run_until(made, lambda: len(made.graph.got) == 3, 120), said
     assert [packet for _, packet in made.graph.got] == sent
     assert not made.counters.dropped and not made.side.on_the_way
-    fail(chip, made, said, "S2MM", DEC_ERR, topic, sent[0])
     made.close()
     chip.sim.close()
 

@@ -60,6 +60,7 @@ def test_each_type_comes_in_once_and_goes_out_once_in_the_order_of_names():
         ("udp://[a", "stream"),
         ("tcp://a:99", "uart"),
         ("serial:///dev/a?baud=9600&baud=115200", "{kind: uart, baud: 115200}"),
+        ("zynq://uio0/udmabuf0", "axi_dma"),
         ("serial:///dev/a?baud=fast", "uart"),
         ("serial:///dev/a?baud=\N{SUPERSCRIPT TWO}", "uart"),
         ("sim", "stream"),
