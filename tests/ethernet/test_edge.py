@@ -258,15 +258,16 @@ def test_an_echo_in_fragments_is_answered_in_fragments():
     whole = (ip(id=9) / ICMP(id=7) / Raw(payload(50)))[IP]
     parts = scapy.fragment(IP(bytes(whole)), fragsize=24)
     steps = [wire(arp(op=2, to=MAC)), *(wire(Ether(dst=MAC, src=HOST_MAC) / p) for p in parts)]
-    # What continues nothing is not answered.
-    steps.append(steps[-1])
+    # What continues nothing is not answered, nor what another one sends in between.
+    other = wire(ip(id=9, src=OTHER, frag=parts[1].frag, flags="MF") / Raw(payload(24)))
+    steps = [*steps[:2], other, *steps[2:], steps[-1]]
     seen = run(steps, after=500)
     answers = [Ether(frame)[IP] for frame in seen.frames]
     assert [(p.frag, p.flags.MF) for p in answers] == [(p.frag, p.flags.MF) for p in parts]
     body = b"".join(bytes(p.payload)[: p.len - 20] for p in answers)
     assert body[:2] == b"\0\0" and body[4:] == bytes(whole.payload)[4:]
     assert scapy.checksum(body) == 0
-    assert seen.drops == {"other": 1}
+    assert seen.drops == {"other": 2}
 
 
 def test_groups_are_joined_and_queries_answered():
@@ -293,3 +294,10 @@ def test_groups_are_joined_and_queries_answered():
 
 
 ALERT = scapy.IPOption_Router_Alert()
+
+
+def test_fragments_may_come_slowly_one_after_the_other():
+    own = settings(fragment_bytes=4096, tick_bits=8)
+    steps = [part for each in fragments(80, 1) for part in (each, Pause(2 << 8))]
+    seen = run(steps, own, after=150)
+    assert seen.datagrams == come(80) and not +seen.drops

@@ -322,3 +322,10 @@ def test_only_one_build_at_a_time_writes(folder, monkeypatch):
         build(folder, 1)
     os.close(number)
     assert tree(folder) == before
+
+
+def test_a_file_that_has_the_right_text_already_is_not_in_the_way(folder):
+    for name in texts(1).keys() - texts(0).keys():
+        (folder / name).write_text(texts(1)[name])
+    build(folder, 1)
+    assert tree(folder).keys() == {*VERSIONS[1], "manifest.json"}

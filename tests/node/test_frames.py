@@ -287,3 +287,10 @@ def test_a_reader_that_skips_the_check_is_found(monkeypatch):
         written[rng.randrange(2, 9)] ^= 2
         passed += ByteStreamReader().feed(bytes(written)) != []
     assert passed
+
+
+def test_the_oldest_open_message_gives_way_to_one_too_many():
+    sender, receiver = MessageSender(32), MessageReceiver(max_open=2)
+    for _ in range(3):
+        receiver.take(sender.frames(NodeMessage(topic=1, packet=bytes(40)))[0])
+    assert receiver.counters.cut == 1

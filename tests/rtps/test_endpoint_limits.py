@@ -193,3 +193,14 @@ def test_which_samples_ask_for_an_acknowledgement(sent, qos, large, asks):
         (beat,) = sent.take(Heartbeat)
         asking += [] if beat.final else [number]
     assert asking == asks
+
+
+def test_gaps_of_a_writer_are_not_those_of_the_one_that_begins_anew(sent):
+    reader, got, _ = listening(sent)
+    # 1 is missing, so the gap waits.
+    reader.on_gap(HERE, Gap(reader=0, writer=HERE.entity, start=3, numbers=NumberSet(4)), 1.0)
+    reader.on_data(HERE, data(4), None, 1.0)
+    assert reader.on_heartbeat(HERE, heartbeat(1, 2, count=2), 2.0)
+    for number in (1, 2, 3):
+        reader.on_data(HERE, data(number), None, 2.1)
+    assert got == [1, 2, 3]

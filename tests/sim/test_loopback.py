@@ -305,3 +305,11 @@ def test_gates_stay_open_after_what_is_offered():
     seen = harness.run_packets([PACKET] * 4, RunOptions(stalls=stalls, observe=observe))
     assert seen.packets == [PACKET] * 4
     assert waited > 20 and not fell
+
+
+NAMES = make("ros2", {"names": "string[]"}, "Names")
+
+
+def test_the_nul_of_one_packet_is_not_written_in_the_next():
+    packets = [b"\0\1\0\0\1\0\0\0\2\0\0\0a\0"] * 2
+    assert loopback(NAMES, packets).packets == packets

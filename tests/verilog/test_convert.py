@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from amaranth.hdl import Format, Instance, Module, Print, Signal
+from amaranth.hdl import Cat, Format, Instance, Module, Print, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -182,3 +182,30 @@ def test_what_cannot_be_converted_is_refused(design: Any, options: Any, error: s
     with pytest.raises((TypeError, ValueError), match=text) as raised:
         convert(design, **options)
     assert type(raised.value).__name__ == kind
+
+
+class Shifted(wiring.Component):
+    """The low bits of a shifted value, which an operator reads."""
+
+    def __init__(self) -> None:
+        super().__init__({"a": In(8), "n": In(3), "c": In(4), "same": Out(1), "both": Out(8)})
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        m.d.comb += self.same.eq((self.a >> self.n)[:4] == self.c)
+        m.d.comb += self.both.eq(Cat((self.a >> self.c[:2])[:4], self.c))
+        return m
+
+
+@pytest.mark.usefixtures("iverilog")
+def test_what_is_read_of_a_shifted_value_has_no_more_bits(tmp_path: Path) -> None:
+    widths, steps = (
+        {"a": 8, "n": 3, "c": 4},
+        [{"a": 0xA5, "n": 1, "c": 2}, {"a": 0xF3, "n": 2, "c": 12}],
+    )
+    got = replay(
+        convert(Shifted()), "top", widths, {"same": 1, "both": 8}, steps, "-g2005", tmp_path
+    )
+    assert [int(row["same"], 2) for row in got] == [1, 1]
+    want = [s["a"] >> s["c"] % 4 & 15 | s["c"] << 4 for s in steps]
+    assert [int(row["both"], 2) for row in got] == want

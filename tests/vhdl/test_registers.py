@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from amaranth.hdl import ClockDomain, Module, Print
+from amaranth.hdl import ClockDomain, Module, Print, Signal
 from amaranth.lib import wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
@@ -90,3 +90,14 @@ def wire_with(**attributes: Bits) -> Wire:
 )
 def test_a_register_starts_at_its_initial_value(wire: Wire | None, width: int, value: str) -> None:
     assert initial_value(wire, width) == value
+
+
+def test_a_register_that_a_zero_clears_is_no_register_with_that_reset() -> None:
+    def fill(d: FilledComponent, m: Module) -> None:
+        r = Signal(4, reset_less=True)
+        m.d.sync += r.eq(d.a)
+        with m.Switch(d.s), m.Case(0):
+            m.d.sync += r.eq(0)
+        m.d.comb += d.q.eq(r)
+
+    assert "if s = '0'" in vhdl_of(fill, a=In(4), s=In(1), q=Out(4))

@@ -212,21 +212,18 @@ class Assembler(wiring.Component):
                 fragment.eq(ask.first),
                 left.eq(ask.fragments),
                 inside.eq(0),
-                now.eq(held),
-                at.eq(held.place),
+                # Fragments that go on have the same of what came before.
+                now.row.eq(ask.row),
+                now.number.eq(ask.number),
+                now.fragment_bytes.eq(ask.fragment_bytes),
+                now.sample_bytes.eq(ask.sample_bytes),
+                now.next.eq(Mux(begins, 1, held.next)),
+                now.place.eq(Mux(begins, 0, held.place)),
+                at.eq(Mux(begins, 0, held.place)),
             ]
             with m.If(begins):
                 # What came of another sample is overwritten.
-                m.d.sync += [
-                    valid.bit_select(ask.reader, 1).eq(0),
-                    now.row.eq(ask.row),
-                    now.number.eq(ask.number),
-                    now.next.eq(1),
-                    now.place.eq(0),
-                    now.fragment_bytes.eq(ask.fragment_bytes),
-                    now.sample_bytes.eq(ask.sample_bytes),
-                    at.eq(0),
-                ]
+                m.d.sync += valid.bit_select(ask.reader, 1).eq(0)
         with m.If(came.takes):
             m.d.sync += [inside.eq(inside + 1), at.eq(at + is_next)]
             with m.If(ends):

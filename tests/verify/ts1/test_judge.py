@@ -7,12 +7,13 @@ from typing import ClassVar
 
 import pytest
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError, Diagnostic, Source, Span
 from firm_hdl.model import Primitive, Sequence, String
 from firm_hdl.verify.results.records import OracleVerdict
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.ts1 import judge as judging
 from firm_hdl.verify.ts1.judge import compare, judge, record_of
+from firm_hdl.verify.ts1.known import Known
 from firm_hdl.verify.ts1.oracles.oracle import Accepted, Oracle, Refused
 from tests.verify.judged import assert_passed
 from tests.verify.report.samples import a_test
@@ -205,3 +206,13 @@ def test_a_front_end_that_accepts_too_much_is_caught(court, distro, oracle, text
     monkeypatch.setattr(judging, "read", lambda universe, case: good)
     found = here.outcome(oracle, "p/A")
     assert isinstance(found.verdict, Failed) and "firm-hdl accepts" in found.verdict.details[0]
+
+
+def test_each_mistake_that_we_find_has_to_be_known(court, monkeypatch):
+    source = Source(name="a.msg", text="odd")
+    known = Diagnostic(message="odd", span=Span(source=source, start=0, end=3))
+    rule = Known(key="odd", oracles="genmsg", why="it is", ours=("odd", "odd"))
+    monkeypatch.setattr("firm_hdl.verify.ts1.judge.KNOWN", (rule,))
+    for second, kind in ((known, KnownDifference), (Diagnostic(message="it is wrong"), Failed)):
+        found = outcome(court, DefinitionError([known, second]), ACCEPTED)
+        assert isinstance(found.verdict, kind)
