@@ -80,6 +80,6 @@ def test_discovery_and_samples_both_ways(has_losses):
     assert wires.counters["malformed"] == 1
     if not has_losses:
         # The header of a datagram, which was stored, has 60 bytes.
-        assert wires.waits[0] < 80
+        assert wires.waits[0] < 150
         begins = min(each for each in wires.sent_at if each > wires.taken_at[0])
-        assert begins - wires.taken_at[0] < 40
+        assert begins - wires.taken_at[0] < 60
