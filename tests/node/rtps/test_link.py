@@ -131,4 +131,4 @@ def test_discovery_and_samples_both_ways(has_losses):
         # The header of a datagram, which was stored, has 60 bytes.
         assert min(wires.waits) < 150
         begins = min(each for each in wires.sent_at if each > wires.taken_at[0])
-        assert begins - wires.taken_at[0] < 40
+        assert begins - wires.taken_at[0] < 60
