@@ -91,7 +91,7 @@ def build_node(
     datasheet : bool
         Write the datasheet, too. It has the figures of bitstreams that are in the folder.
     ip : bool
-        Write an IP of Vivado, too; of a node whose link is a stream.
+        Write an IP of Vivado, too; of a node whose link is AXI4-Stream.
 
     Raises
     ------
@@ -99,8 +99,9 @@ def build_node(
         If the accelerator cannot be used, the node is too large, two design units would have one
         name, or the folder cannot be written.
     """
-    if ip and description.link.kind != "stream":
-        message = f"IP needs the link 'stream', which is AXI4-Stream, not '{description.link.kind}'"
+    kind = description.link.kind
+    if ip and kind not in ("stream", "axi_dma"):
+        message = f"IP needs the link 'stream' or 'axi_dma', which are AXI4-Stream, not '{kind}'"
         raise DefinitionError([Diagnostic(message=message, span=description.link_span)])
     name = identifier(description.node)
     if description.hdl is not None and description.hdl.entity.lower() == name.lower():

@@ -300,18 +300,25 @@ publish: {{/out: {{type: std_msgs/msg/Empty}}}}
 
 
 @pytest.mark.usefixtures("hollow", "iverilog")
-def test_node_with_a_stream_is_ip(tmp_path, capsys):
+@pytest.mark.parametrize("link", ["stream", "axi_dma"])
+def test_node_with_a_stream_is_ip(tmp_path, capsys, link):
     file = tmp_path / "demo.yaml"
     file.write_text(NODE.format(link="udp"))
     command = ["node", "build", str(file), "--ip", "vivado", "--out", str(tmp_path / "out")]
     assert main(command) == 1
     assert f"{file}:2:7: error: IP needs the link 'stream'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-    file.write_text(NODE.format(link="stream"))
+    file.write_text(NODE.format(link=link))
     assert main(command) == 0
     folder = tmp_path / "out" / "demo" / "ip" / "demo"
     found, left = check_ip(folder, tmp_path / "work")
-    assert found["m_axis"][2]["TDEST"] == "m_axis_tdest"
+    if link == "stream":
+        assert found["m_axis"][2]["TDEST"] == "m_axis_tdest"
+    else:
+        # They are ports without an interface.
+        assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
+        left -= {"mm2s_aresetn", "s2mm_aresetn"}
+    assert found["s_axis"][2]["TKEEP"] == "s_axis_tkeep"
     assert found["m_axis_subscribe_cmd_data"][2]["TDATA"] == "m_axis_subscribe_cmd_data_tdata"
     assert all(each.startswith(("time_", "counters_")) for each in left)
     files = [str(each) for each in folder.glob("*.v")]
