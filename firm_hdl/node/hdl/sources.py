@@ -108,7 +108,12 @@ def problems_of(
         if not description.hdl.has_records and _PACKAGE.search(found[4]):
             hint = "; with 'ports: records' in its description, firm-hdl adds the packages"
         problem = Diagnostic(message=f"{found[4]}{hint}", span=span)
-        if problem not in problems:
+        # Verilator goes on with a constant in place of what it has not found.
+        follows = found[4].startswith("Unsupported: Member call on object") and any(
+            (each.span.source.name, each.span.line) == (span.source.name, span.line)
+            for each in problems
+        )
+        if problem not in problems and not follows:
             problems.append(problem)
     if problems:
         return DefinitionError(problems)
