@@ -73,9 +73,12 @@ foreach {from to} {
 set_false_path -to [get_registers "${firm_hdl_instance}PATH|rst_cdc|stage*"]
 """
 
+_ECP5 = {"IDDRX1F", "ODDRX1F", "DELAYG"}
+"""Cells of an RGMII, which are those of an FPGA that neither Vivado nor Quartus knows."""
+
 
 def constraints(design: Design, *, name: str, module: str) -> dict[str, str]:
-    """Write the constraints of a design; no files, if it has no such FIFO.
+    """Write the constraints of a design; no files, if it has no such FIFO, or cells of the ECP5.
 
     Parameters
     ----------
@@ -85,7 +88,8 @@ def constraints(design: Design, *, name: str, module: str) -> dict[str, str]:
         The outermost module in Verilog.
     """
     paths = list(_fifos(design, design.top, ()))
-    if not paths:
+    items = (item for each in design.modules.values() for item in each.items)
+    if not paths or any(isinstance(item, Cell) and item.kind in _ECP5 for item in items):
         return {}
     names = {"name": name, "module": module}
     xdc = [_XDC_FIFO.replace("PATH", "/".join(path)) for path in paths]

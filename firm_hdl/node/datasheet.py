@@ -72,7 +72,8 @@ def node_datasheet(
             (f"{memory_bytes(facts):,}", "bytes of packet memory"),
             (f"{area['lut']:,} LUT", how),
             (f"{area['ff']:,} FF", how),
-            (f"{area['mhz']:.0f} MHz", f"estimated, slowest part: {area['slowest']}"),
+            (f"{description.clock_hz / 1e6:g} MHz", "clock of the description"),
+            (f"{area['mhz']:.4g} MHz", f"estimated, slowest part: {area['slowest']}"),
             *((row[2], f"measured, placed on {row[1]}") for row in rows),
             *((f"{row[4]} MHz", f"measured, placed on {row[1]}") for row in rows),
             *([(_clock(needed), "needed for all stated rates")] if needed else []),
@@ -193,7 +194,7 @@ def _area(name: str, found: Mapping[str, Any] | None, how: str = "") -> tuple[st
     """Return a row: part, device, look-up tables, flip-flops, clock, and how that is known."""
     if found is None:
         return _NAMES.get(name, name), "", "", "", "", "not measured"
-    figures = (f"{found['lut']:,}", f"{found['ff']:,}", f"{found['mhz']:.0f}")
+    figures = (f"{found['lut']:,}", f"{found['ff']:,}", f"{found['mhz']:.4g}")
     return _NAMES.get(name, name), found["part"], *figures, how or how_text(found)
 
 

@@ -218,7 +218,7 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     )
     yield f"    {listed}"
     yield (
-        f"    {area['mhz']:.0f} MHz in its slowest part ({area['slowest']}); when placed, about "
+        f"    {area['mhz']:.4g} MHz in its slowest part ({area['slowest']}); when placed, about "
         f"{placed_cells(area['lut'])} cells of look-up tables"
     )
     if needed := clock_needed(facts):
@@ -247,12 +247,16 @@ def parts_of(facts: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any] | N
 
 
 def area_of(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """Add up the parts: `part`, `lut`, `ff`, `mhz` of the `slowest`, and `without` what that is."""
+    """Add up the parts: `part`, `lut`, `ff`, `mhz` of the `slowest`, and `without` what that is.
+
+    The slowest part is one of those that have the node's clock: Ethernet has that of its PHY.
+    """
     parts = list(parts_of(facts))
     known = {name: each for name, each in parts if each is not None}
     unknown = {name for name, each in parts if each is None}
     without = ", without the accelerator" if unknown == {"accelerator"} else ""
-    slowest = min(known, key=lambda name: known[name]["mhz"], default="")
+    clocked = known.keys() - {"ethernet"}
+    slowest = min(sorted(clocked), key=lambda name: known[name]["mhz"], default="")
     return {
         "part": ", ".join(dict.fromkeys(each["part"] for each in known.values())),
         "lut": sum(each["lut"] for each in known.values()),
@@ -288,7 +292,15 @@ def clock_needed(facts: Mapping[str, Any]) -> float:
 
 
 def warnings_of(description: Description, facts: dict[str, Any]) -> Iterator[str]:
-    """Yield what the node cannot carry: rates and sizes."""
+    """Yield what the node cannot reach or carry: clocks, rates and sizes."""
+    area, clock = area_of(facts), description.clock_hz / 1e6
+    if clock > area["mhz"]:
+        least = " (25 at least, with Ethernet)" if description.link.has_ethernet else ""
+        yield (
+            f"the clock of {clock:g} MHz is above the {area['mhz']:g} MHz that are estimated for "
+            f"the slowest part ({area['slowest']}) on {area['part']}: lower clock_mhz{least}, or "
+            "use a faster device"
+        )
     for topic in facts["topics"]:
         for store in topic["packets"].values():
             if (needed := store["clock_hz"]) is not None and needed > description.clock_hz:

@@ -12,9 +12,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from amaranth.hdl import ClockDomain, Instance, Module
+from amaranth.lib.fifo import AsyncFIFO
 
+from firm_hdl import rtlil
 from firm_hdl.cli import main
 from firm_hdl.export.build import build
+from firm_hdl.export.crossings import constraints
 from firm_hdl.export.options import Options
 from firm_hdl.export.parts import build_part, make_part
 from firm_hdl.frontend import Library
@@ -363,3 +367,18 @@ def test_constraints_of_a_crossing_name_its_registers(tmp_path, kind):
                 plain = re.sub(r"_reg(\[\S\]|\*)?(/\w+)?$|\[\*\]$", "", pattern.replace("|", "/"))
                 shape = re.compile(re.escape(plain).replace(r"\*", "[^/]*"))
                 assert any(map(shape.fullmatch, registers)), pattern
+
+
+def test_a_design_with_cells_of_another_fpga_has_no_constraints():
+    def files(add_cells):
+        m = Module()
+        m.domains.other = ClockDomain()
+        m.submodules.fifo = fifo = AsyncFIFO(width=8, depth=4, w_domain="other")
+        if add_cells:
+            m.submodules.inner = inner = Module()
+            inner.submodules.cell = Instance("DELAYG", i_A=fifo.r_data[0], o_Z=fifo.w_data[0])
+        ports = [fifo.w_en, fifo.r_data, fifo.r_en]
+        circuit = rtlil.rtlil_of(m, name="board_verilog", ports=ports)
+        return constraints(rtlil.netlist_of(circuit), name="board", module="board_verilog")
+
+    assert files(False).keys() == {"board.xdc", "board.sdc"} and not files(True)

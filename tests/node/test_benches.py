@@ -16,6 +16,7 @@ from firm_hdl.cases.stimuli import stimuli
 from firm_hdl.node import Node
 from firm_hdl.node.benches import bench_files, link_script
 from firm_hdl.node.build import build_node
+from firm_hdl.node.messages import MessageSender, NodeMessage
 from firm_hdl.node.top import node_ports
 from tests.depth import by_depth
 from tests.node.accelerators import echo_text
@@ -192,8 +193,28 @@ def test_an_accelerator_with_a_fault_fails(folders, ghdl, iverilog, tmp_path):
 
 
 @pytest.mark.thorough
-def test_what_an_accelerator_publishes_is_not_judged(ghdl, iverilog, tmp_path):
+def test_what_an_accelerator_publishes_is_judged_if_it_is_expected(ghdl, iverilog, tmp_path):
     folder = build_node(read(echo_text()), tmp_path, stimuli=stimuli).folder
+    # A string comes back; no line expects the time that is published with it.
+    string = bytes.fromhex("00010000" + "03000000" + "616200")
+    (came,), (said,) = (
+        [frame.hex() for frame in MessageSender(None).frames(NodeMessage(topic=id, packet=string))]
+        for id in (1, 2)
+    )
+    # Flags, the number of the message, and the time at which it leaves.
+    expected = f"{said[:2]}--{said[4:16]}{'--' * 8}{said[32:]}"
+    either = f"{expected[:4]}--{expected[6:]}"
+    frames = tmp_path / "frames.txt"
+    for lines, (wanted, line) in {
+        (came, expected): (0, "1 frames sent, 1 frames compared, 1 not judged, "),
+        (came, expected[:-2] + "01"): (1, "byte 26 is 00 instead of 01"),
+        (came, came, expected): (1, "no such frame is expected"),
+        (came, either): (1, "has 24 bytes instead of 27|no such frame"),
+    }.items():
+        frames.write_text("".join(f"{'><'[each != came]} {each}\n" for each in lines))
+        for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
+            status, output = tool(folder, command, tmp_path / tool.__name__, frames=frames)
+            assert (status != 0) == wanted and re.search(line, output), output
     for tool, command in ((in_ghdl, ghdl), (in_icarus, iverilog)):
         status, output = tool(folder, command, tmp_path / tool.__name__)
         assert status == 0 and "frames compared, 0 not judged, " in output, output

@@ -107,3 +107,20 @@ publish:
     wide = facts_of(read(f"bus_bytes: 16\n{text.replace('accelerator', '# ')}"))
     assert area_of(wide)["without"] == ", without parts that were not measured"
     assert area_of(wide)["lut"] > 10_000
+
+
+@pytest.mark.parametrize("clock", [50, 76.5, 125, 400])
+def test_a_clock_above_the_estimate_is_a_warning(clock):
+    link = '{kind: KIND, ethernet: rgmii, mac: "02:00:00:00:00:50", address: 10.0.0.9/24}'
+    text = "node: n\nclock_mhz: CLOCK\nsubscribe: {/a: {type: std_msgs/msg/Char}}\n"
+    text = text.replace("CLOCK", str(clock))
+    # Ethernet has the clock of its PHY, which is slower than the one of the other parts.
+    for kind, mhz, part in (("rtps", 76.5, "link"), ("udp", 160, "core")):
+        found = summary(read(text, link=link.replace("KIND", kind)))
+        assert f"{mhz} MHz in its slowest part ({part})" in found
+        warning = (
+            f"warning: the clock of {clock} MHz is above the {mhz} MHz that are estimated for the "
+            f"slowest part ({part}) on ECP5 LFE5U-45F-8: lower clock_mhz (25 at least, with "
+            "Ethernet), or use a faster device"
+        )
+        assert (warning in found.splitlines()) == (clock > mhz)

@@ -51,7 +51,8 @@ class LinkScript:
         ``> HEX``: a frame to the node. ``< HEX``: a frame from the node, in which ``--`` stands for
         any byte. ``=``: wait until all frames before this line have come.
     ignores_topics : bool
-        Frames of topics may come at any time, and are not judged: those of control messages are.
+        Frames of topics may come at any time, and are not judged unless the file of a user expects
+        some of the same topic: those of control messages are.
     loops : tuple of pairs of Topic
         Subscriptions whose messages the bench connects with publications.
     """

@@ -132,6 +132,7 @@ def _values(
         "widths": {each.name: each.width for each in ports},
         "channels": channels,
         "most_bytes": _most_bytes(description, script),
+        "topics": len(description.topics),
         "ignores_topics": script.ignores_topics,
         "host": (HOST_ADDRESS, HOST_PORT),
         "link": description.link,
@@ -141,11 +142,9 @@ def _values(
 
 
 def _most_bytes(description: Description, script: LinkScript) -> int:
-    """Return the size of the longest frame that may come, in bytes."""
-    if not script.ignores_topics:
-        return script.most_bytes
-    stores = [store for _, store in description.sent()]
-    return max([script.most_bytes, *(HEADER_BYTES + each.memory_bytes for each in stores)])
+    """Return the size of the longest frame that fits into a memory, in bytes."""
+    sizes = [each.memory_bytes for topic in description.topics for _, each in topic.stores]
+    return max([script.most_bytes, *(HEADER_BYTES + each for each in sizes)])
 
 
 def _address(text: str) -> int:

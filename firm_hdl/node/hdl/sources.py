@@ -96,6 +96,7 @@ def problems_of(
     assert description.hdl is not None
     by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
     problems: list[Diagnostic] = []
+    places: set[tuple[str, str]] = set()
     for line in said.splitlines():
         found = _PLACE.match(line)
         if not found or "%Warning" in line or found[4].startswith(("warning:", "note:")):
@@ -108,8 +109,11 @@ def problems_of(
         if not description.hdl.has_records and _PACKAGE.search(found[4]):
             hint = "; with 'ports: records' in its description, firm-hdl adds the packages"
         problem = Diagnostic(message=f"{found[4]}{hint}", span=span)
-        if problem not in problems:
+        # Verilator goes on with a constant in place of what it has not found.
+        follows = found[4].startswith("Unsupported: Member call on object")
+        if problem not in problems and not (follows and (file, found[2]) in places):
             problems.append(problem)
+            places.add((file, found[2]))
     if problems:
         return DefinitionError(problems)
     if library := _LIBRARY.search(said):

@@ -148,6 +148,7 @@ class _Build:
 
     def make(self, folder: Path) -> Path:
         """Compile all files side by side, and link them."""
+        libraries = self._libraries(folder) if self.source.traced == "fst" else []
         self.report("Verilator translates it to C++")
         try:
             files, headers = translate(self.source, self.verilator, folder)
@@ -175,11 +176,29 @@ class _Build:
                 stop.set()
                 pool.shutdown(cancel_futures=True)
                 raise
-        # FST is compressed; newer versions of Verilator do not bring their own lz4.
-        more = ["-lz"] if self.source.traced == "fst" else []
-        more += ["-llz4"] if more and (headers / "fstcpp").exists() else []
-        linked = [*self.command, *sorted(map(str, objects)), "-pthread", *more]
+        linked = [*self.command, *sorted(map(str, objects)), "-pthread", *libraries]
         return self._run(linked, folder / "program", folder)
+
+    def _libraries(self, folder: Path) -> list[str]:
+        """Return the libraries that compress FST, once a program of one line has been linked."""
+        names = {"z": "zlib.h"}
+        try:
+            if (_headers(self.verilator, folder) / "fstcpp").exists():
+                # Newer versions of Verilator do not bring their own lz4.
+                names["lz4"] = "lz4.h"
+        except ToolError as error:
+            raise BuildError(f"Verilator failed: {error}") from None
+        # `translate` compiles the files of another folder.
+        probe = folder / "probe" / "probe.cpp"
+        probe.parent.mkdir()
+        text = "".join(f"#include <{header}>\n" for header in names.values())
+        probe.write_text(f"{text}int main() {{}}\n", encoding="utf-8")
+        libraries = [f"-l{name}" for name in names]
+        try:
+            self._run([*self.command, str(probe), *libraries], probe.with_suffix(""), folder)
+        except BuildError as error:
+            raise BuildError(f"{error}\n{_FST}") from None
+        return libraries
 
     def _object(
         self, path: Path, folder: Path, include: Sequence[str], own: str, stop: threading.Event
@@ -209,8 +228,6 @@ class _Build:
             return made_by(command[0], output)
         except ToolError as error:
             said = _shortened(str(error))
-            if self.source.traced == "fst":
-                said += f"\n{_FST}"
             raise BuildError(f"The compiler failed: {shlex.join(whole)}\n{said}") from None
 
 
@@ -308,10 +325,9 @@ def translate(
     makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
     # Which parts of the runtime a model needs depends on the version.
     parts = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)
-    root = run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()
-    if not parts or not root:
-        raise ToolError("Verilator did not say where its runtime is, or which parts a model needs")
-    headers = Path(root, "include")
+    if not parts:
+        raise ToolError("Verilator did not say which parts of its runtime a model needs")
+    headers = _headers(verilator, folder)
     runtime = [headers / f"{part}.cpp" for part in parts[1].replace("\\", " ").split()]
     files = sorted(folder.glob("*.cpp"))
     if "VM_PARALLEL_BUILDS = 0" in makefile:
@@ -324,3 +340,10 @@ def translate(
         for path in files:
             path.write_text(texts[path.name], encoding="utf-8")
     return [*files, *runtime], headers
+
+
+def _headers(verilator: tuple[str, ...], folder: Path) -> Path:
+    """Return the folder of the headers of Verilator's runtime."""
+    if not (root := run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()):
+        raise ToolError("Verilator did not say where its runtime is")
+    return Path(root, "include")

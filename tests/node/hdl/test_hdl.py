@@ -258,7 +258,7 @@ RECORD_MISTAKES = [
         [(f"output {STRUCT}", "output logic [3:0]")],
         f"port 'publish_goes' of 'Relay' must have the type {STRUCT}, which has 17 bits, not 4",
     ),
-    ("sv", [("endmodule", "assign publish_goes.data.size = 0; endmodule")], "'size' not found"),
+    ("sv", [("endmodule", "assign publish_goes.data.size.w = 0; endmodule")], "'size' not found"),
 ]
 
 
@@ -266,7 +266,8 @@ RECORD_MISTAKES = [
 def test_mistakes_in_records(written, language, changes, text):
     with pytest.raises(DefinitionError, match=r"Relay\.\w+:\d+:\d+: error: ") as caught:
         load_accelerator(written(language, *changes, description=SMALL, with_records=True))
-    assert text in str(caught.value)
+    # Verilator reports a wrong member twice.
+    assert text in str(caught.value) and "Unsupported" not in str(caught.value)
 
 
 def test_packages_that_are_not_there(written):

@@ -194,6 +194,22 @@ def test_a_compiler_that_fails_is_quoted(source, tmp_path, monkeypatch):
     assert list((tmp_path / "cache").iterdir()) == []
 
 
+@pytest.mark.parametrize("header", ["zlib.h", "lz4.h"])
+def test_a_library_of_waveforms_is_looked_for_first(source, header, tmp_path, monkeypatch):
+    (tmp_path / "include/fstcpp").mkdir(parents=True)
+    verilator = script(tmp_path, "verilator", f'echo "{tmp_path}"')
+    monkeypatch.setattr(compilers, "find_verilator", lambda user: (verilator,))
+    lacks = f'case "$*" in *probe*) grep -n {header} */probe.cpp && exit 1;; esac'
+    compiler = script(tmp_path, "compiler", f"{COMPILES}; {lacks}; {WRITES}")
+    Path(f"{compiler}.version").write_text("1")
+    monkeypatch.setenv("CXX", compiler)
+    source.traced, told = "fst", []
+    with pytest.raises(BuildError, match=rf"include <{header}>\nA waveform as FST needs zlib"):
+        compilers.program_of(lambda: source, cache=tmp_path / "cache", report=told.append)
+    assert told == ["elaborates the design"]
+    assert len(Path(f"{compiler}.calls").read_text().splitlines()) == 1
+
+
 def test_a_cache_that_cannot_be_used_is_named(source, tmp_path, monkeypatch):
     monkeypatch.setenv("CXX", "true")
     file = tmp_path / "file"
