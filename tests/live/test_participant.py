@@ -43,7 +43,7 @@ publish:
   /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048}}
   /imu_out: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
   /twist_out: {{type: geometry_msgs/msg/Twist}}
-  /scan_out: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 2048}}
+  /scan_out: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 16384}}
 serve:
   /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
 """
