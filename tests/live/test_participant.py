@@ -29,7 +29,7 @@ NODE = f"""\
 node: mirror
 namespace: /fpga
 distro: jazzy
-paths: [{PACKAGES}, packages]
+paths: [{PACKAGES}]
 clock_mhz: 1
 bus_bytes: 2
 link: {{kind: rtps, address: 127.0.0.1, participant: 50}}
@@ -42,7 +42,7 @@ subscribe:
 publish:
   /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048}}
   /imu_out: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
-  /twist_out: {{type: geometry_msgs/msg/Twist}}
+  /twist_out: {{type: geometry_msgs/msg/Twist, memory_bytes: 2048}}
   /scan_out: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 16384}}
 serve:
   /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
@@ -61,7 +61,7 @@ publish: {/text_back: {type: std_msgs/msg/String, memory_bytes: 256}}
 """
 
 LARGE = """\
-node: large
+node: clouds
 namespace: /fpga
 distro: jazzy
 paths: [packages]
@@ -85,7 +85,7 @@ FILES = {"packages/firm_hdl/msg/Block.msg": "int64 number\nuint8[] data\n"}
 @pytest.fixture(scope="module")
 def large(tmp_path_factory):
     """Build the node of large messages as a process."""
-    return build_board(tmp_path_factory.mktemp("large"), "rtps", "large", LARGE, FILES)
+    return build_board(tmp_path_factory.mktemp("large"), "rtps", "clouds", LARGE, FILES)
 
 
 @pytest.fixture(scope="module")
