@@ -43,6 +43,8 @@ def write(converters: Converters, sections: Mapping[str, Any]) -> Output:
         shared=[f"`{name}`" for name in dict.fromkeys(names)],
         script=bench["script"],
         bench=bench["entity"],
+        has_registers="registers" in sections,
+        has_ip="ip" in sections,
         ports=[*listed, *fields[:_MOST_FIELDS]],
         more=len(fields[_MOST_FIELDS:]),
         contract=list(contract(plan, sections["timing"]["recovery"])),
