@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from amaranth.sim import Simulator
 
 from firm_hdl.node.rtps.endpoints import own_of
@@ -112,8 +114,11 @@ def test_the_circuit_writes_what_the_host_does():
     )
     has = AckNack(**ends, missing=NumberSet(9), count=0x01020304, final=True)
     lacks = NackFrag(**ends, sequence_number=9, missing=NumberSet(2, (2, 3)), count=0x01020304)
+    asks = replace(has, missing=NumberSet(9, (9, 10)), final=False)
     to = InfoDestination(PEER)
     for job, wanted in (
+        (Job.ACKNACK, (to, replace(has, final=False))),
+        (Job.ACKNACK_MISSING, (to, asks)),
         (Job.ANNOUNCE, (announcement,)),
         (Job.HEARTBEAT, (to, heartbeat)),
         (Job.GAP, (to, gap)),
