@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from amaranth.lib import data, stream, wiring
-from amaranth.lib.wiring import Out
+from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.signatures import packet_layout
@@ -23,6 +23,7 @@ __all__ = [
     "header_layout",
     "link_counters_layout",
     "link_layout",
+    "link_members",
     "passes",
     "time_layout",
 ]
@@ -84,6 +85,15 @@ def link_counters_layout(link: Link | None = None) -> data.StructLayout:
     Without `link`, they are those that every link has.
     """
     return data.StructLayout(dict.fromkeys(link_counters(link) if link else LINK_COUNTERS, 32))
+
+
+def link_members(bus_bytes: int, link: Link | None = None) -> dict[str, Any]:
+    """Return the members of a link that face the core."""
+    return {
+        "received": Out(LinkSignature(bus_bytes)),
+        "sent": In(LinkSignature(bus_bytes)),
+        "counters": Out(link_counters_layout(link)),
+    }
 
 
 def time_layout() -> data.StructLayout:

@@ -14,7 +14,7 @@ from firm_hdl.node.description import Link
 from firm_hdl.node.gateware.byte_packer import BytePacker, pieces_layout
 from firm_hdl.node.gateware.fragments import Fragmenter
 from firm_hdl.node.gateware.header import HeaderInsert
-from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
+from firm_hdl.node.gateware.streams import link_members, passes
 from firm_hdl.node.links.receive import FrameReceiver
 
 __all__ = ["AxiDmaLink"]
@@ -58,9 +58,7 @@ class AxiDmaLink(wiring.Component):
         self.bus_bytes, self.link = bus_bytes, link
         super().__init__(
             {
-                "received": Out(LinkSignature(bus_bytes)),
-                "sent": In(LinkSignature(bus_bytes)),
-                "counters": Out(link_counters_layout()),
+                **link_members(bus_bytes),
                 **self.medium(bus_bytes),
             }
         )

@@ -13,7 +13,7 @@ from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.description import Link
 from firm_hdl.node.gateware.cobs import ByteFrameReader, ByteFrameWriter
 from firm_hdl.node.gateware.header import HeaderInsert
-from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
+from firm_hdl.node.gateware.streams import link_members, passes
 from firm_hdl.node.gateware.uart import UartReceiver, UartTransmitter
 from firm_hdl.node.links.receive import FrameReceiver
 
@@ -46,9 +46,7 @@ class ByteLink(wiring.Component):
         self.bus_bytes, self.link = bus_bytes, link
         super().__init__(
             {
-                "received": Out(LinkSignature(bus_bytes)),
-                "sent": In(LinkSignature(bus_bytes)),
-                "counters": Out(link_counters_layout()),
+                **link_members(bus_bytes),
                 "bytes_in": In(stream.Signature(8)),
                 "bytes_out": Out(stream.Signature(8)),
             }
@@ -103,9 +101,7 @@ class UartLink(wiring.Component):
         self.cycles = clock_hz / link.baud
         super().__init__(
             {
-                "received": Out(LinkSignature(bus_bytes)),
-                "sent": In(LinkSignature(bus_bytes)),
-                "counters": Out(link_counters_layout()),
+                **link_members(bus_bytes),
                 **self.medium(),
             }
         )

@@ -18,7 +18,7 @@ from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.node.control import ethernet_counter
 from firm_hdl.node.description import Description, Link
-from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
+from firm_hdl.node.gateware.streams import link_members, passes
 from firm_hdl.node.links.rtps import RtpsLink, idle_bits
 from firm_hdl.node.links.udp import UdpLink
 from firm_hdl.node.rtps.endpoints import ports_of_link
@@ -70,9 +70,7 @@ class EthernetLink(wiring.Component):
         bus, link = description.bus_bytes, description.link
         super().__init__(
             {
-                "received": Out(LinkSignature(bus)),
-                "sent": In(LinkSignature(bus)),
-                "counters": Out(link_counters_layout(link)),
+                **link_members(bus, link),
                 **self.medium(link),
                 **({"idle": In(idle_bits(description))} if link.kind == "rtps" else {}),
             }

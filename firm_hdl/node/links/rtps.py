@@ -11,7 +11,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware import PacketFifo, PacketWidth
 from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.node.description import Description
-from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
+from firm_hdl.node.gateware.streams import link_members, passes
 from firm_hdl.node.links.udp import DatagramSignature
 from firm_hdl.node.rtps.assembler import Assembler
 from firm_hdl.node.rtps.endpoints import own_of, ports_of_link
@@ -60,9 +60,7 @@ class RtpsLink(wiring.Component):
         bus = description.bus_bytes
         super().__init__(
             {
-                "received": Out(LinkSignature(bus)),
-                "sent": In(LinkSignature(bus)),
-                "counters": Out(link_counters_layout()),
+                **link_members(bus),
                 "idle": In(idle_bits(description)),
                 **self.medium(),
             }

@@ -11,12 +11,7 @@ from amaranth.lib.wiring import In, Out
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.node.gateware.header import HeaderInsert, HeaderStrip
-from firm_hdl.node.gateware.streams import (
-    TOPIC_BITS,
-    LinkSignature,
-    link_counters_layout,
-    passes,
-)
+from firm_hdl.node.gateware.streams import TOPIC_BITS, link_members, passes
 
 __all__ = ["StreamLink"]
 
@@ -51,9 +46,7 @@ class StreamLink(wiring.Component):
         self.bus_bytes = bus_bytes
         super().__init__(
             {
-                "received": Out(LinkSignature(bus_bytes)),
-                "sent": In(LinkSignature(bus_bytes)),
-                "counters": Out(link_counters_layout()),
+                **link_members(bus_bytes),
                 **self.medium(bus_bytes),
             }
         )

@@ -15,7 +15,7 @@ from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.description import Link
 from firm_hdl.node.gateware.fragments import Fragmenter
 from firm_hdl.node.gateware.header import HeaderInsert
-from firm_hdl.node.gateware.streams import LinkSignature, link_counters_layout, passes
+from firm_hdl.node.gateware.streams import link_members, passes
 from firm_hdl.node.links.receive import FrameReceiver
 
 __all__ = ["DatagramSignature", "UdpLink", "datagram_layout"]
@@ -56,9 +56,7 @@ class UdpLink(wiring.Component):
         self.bus_bytes, self.link = bus_bytes, link
         super().__init__(
             {
-                "received": Out(LinkSignature(bus_bytes)),
-                "sent": In(LinkSignature(bus_bytes)),
-                "counters": Out(link_counters_layout()),
+                **link_members(bus_bytes),
                 **self.medium(link),
             }
         )
