@@ -177,8 +177,9 @@ ghdl:
 	@$(call need,ghdl-mcode,command -v ghdl >/dev/null || command -v ghdl-mcode >/dev/null)
 
 verilog:
-	@$(call need,iverilog verilator g++ tcl,command -v iverilog >/dev/null \
-	  && command -v verilator >/dev/null && command -v g++ >/dev/null && command -v tclsh >/dev/null)
+	@$(call need,iverilog verilator g++ tcl device-tree-compiler,command -v iverilog >/dev/null \
+	  && command -v verilator >/dev/null && command -v g++ >/dev/null && command -v tclsh >/dev/null \
+	  && command -v fdtoverlay >/dev/null)
 
 # ROS's own readers of definitions and serializers: for Debian's Python, and Fast CDR for C++.
 oracles: oracles-ros2

@@ -102,6 +102,12 @@ COMMANDS: dict[str, Command] = {
             "firm-hdl node run double.yaml",
         ),
     ),
+    "board": Command(
+        help="write a project that puts a node beside the processor of a Kria or of a PYNQ-Z2",
+        module="boards",
+        has_origins=False,
+        examples=("firm-hdl board init kria", "firm-hdl board init pynq node.yaml --out my_board"),
+    ),
     "verify": Command(
         help="test converters against ROS's own libraries",
         module="testing",

@@ -48,7 +48,7 @@ from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["build_node", "check_units", "placed_on"]
+__all__ = ["build_node", "check_units", "design_name", "node_ip", "placed_on"]
 
 SUMMARY = "summary.txt"
 DATASHEET = "datasheet.html"
@@ -66,6 +66,15 @@ _OTHER_CLOCK = """
 // The reset of the node is a synchronous one there, and ends late in the clock domain of the PHY.
 lint_off -rule SYNCASYNCNET -file "*{file}"
 """
+
+
+def design_name(description: Description) -> str:
+    """Return the name of a node's design, which is that of its folder and of its IP."""
+    name = identifier(description.node)
+    if description.hdl is not None and description.hdl.entity.lower() == name.lower():
+        # Both would be one entity.
+        name += "_node"
+    return name
 
 
 def build_node(
@@ -103,10 +112,7 @@ def build_node(
     if ip and kind not in ("stream", "axi_dma"):
         message = f"IP needs the link 'stream' or 'axi_dma', which are AXI4-Stream, not '{kind}'"
         raise DefinitionError([Diagnostic(message=message, span=description.link_span)])
-    name = identifier(description.node)
-    if description.hdl is not None and description.hdl.entity.lower() == name.lower():
-        # Both would be one entity.
-        name += "_node"
+    name = design_name(description)
     folder = design_folder(out, name)
     node = Node(description)
     ports = node_ports(node)
@@ -242,7 +248,7 @@ def _files(
         **benches,
         **documents,
         **(
-            ip_files(_ip(description, name, ports, messages, {**own.texts, **verilog}))
+            ip_files(node_ip(description, name, ports, messages, {**own.texts, **verilog}))
             if ip
             else {}
         ),
@@ -270,7 +276,7 @@ def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict
     }
 
 
-def _ip(
+def node_ip(
     description: Description,
     name: str,
     ports: Sequence[ComponentPort],

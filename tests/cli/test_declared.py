@@ -40,6 +40,10 @@ DEFAULTS = {
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
         | {"seconds": None, "engine": "auto", "quiet": False, "wave": None},
     ),
+    "board": (
+        ["init", "kria"],
+        {"action": "init", "board": "kria", "file": None, "out": None},
+    ),
     "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
     "hash": ([], {**ORIGINS, "types": [], "all": False}),

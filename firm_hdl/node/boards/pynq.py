@@ -1,0 +1,129 @@
+"""A node in an overlay of PYNQ, with the driver of `zynq://`.
+
+The memory is PYNQ's, so no module of the kernel has to be built. Interrupts are not used, because
+which of them PYNQ hands to programs differs between its images; a thread reads the status instead.
+Importing this module needs PYNQ.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from contextlib import suppress
+from typing import Any
+
+from pynq import MMIO, Overlay, allocate
+
+from firm_hdl.node.boards.zynq import ZynqBoard
+from firm_hdl.node.description import Description
+
+__all__ = ["NodeOverlay"]
+
+_POLL_SECONDS = 0.001
+_STATUS = (0x04, 0x34)
+"""MM2S_DMASR and S2MM_DMASR (PG021, 7.1)."""
+_INTERRUPTS = 1 << 12 | 1 << 14
+"""IOC_Irq and Err_Irq in both."""
+_BUFFER_BYTES = 1 << 18
+"""Three of the largest frames, which have less than 64 kB."""
+
+
+class NodeOverlay(Overlay):
+    """The overlay of a node with the link `axi_dma`; its parameters are those of `pynq.Overlay`.
+
+    Example
+    -------
+    ::
+
+        board = NodeOverlay("twist.bit").board(read_description("node.yaml"))
+    """
+
+    def board(self, description: Description, dma: str = "dma") -> ZynqBoard:
+        """Return the node as a board.
+
+        Parameters
+        ----------
+        description : Description
+            That of the node in the overlay.
+        dma : str
+            The name of the AXI DMA in the block design.
+        """
+        about = self.ip_dict[dma]
+
+        def devices(*_: str) -> tuple[_Registers, _Buffer]:
+            mmio = MMIO(about["phys_addr"], about["addr_range"])
+            return _Registers(mmio, about.get("parameters", {})), _Buffer()
+
+        return ZynqBoard("pynq", dma, "buffer", description.link.buffer_bytes, devices)
+
+
+class _Registers:
+    """The registers of a DMA. The file can be read when a bit of an interrupt was seen."""
+
+    def __init__(self, mmio: Any, parameters: dict[str, str]) -> None:
+        self._mmio, self._parameters = mmio, parameters
+        self._reader, self._writer = os.pipe()
+        os.set_blocking(self._reader, False)
+        self._is_asked, self._is_open = threading.Event(), True
+        self._thread = threading.Thread(target=self._poll, daemon=True)
+        self._thread.start()
+
+    def _poll(self) -> None:
+        while self._is_asked.wait() and self._is_open:
+            if any(self._mmio.read(at) & _INTERRUPTS for at in _STATUS):
+                self._is_asked.clear()
+                os.write(self._writer, b"\0")
+            else:
+                time.sleep(_POLL_SECONDS)
+
+    def fileno(self) -> int:
+        return self._reader
+
+    def read(self, offset: int) -> int:
+        return int(self._mmio.read(offset))
+
+    def write(self, offset: int, value: int) -> None:
+        self._mmio.write(offset, value)
+
+    def take_interrupt(self) -> None:
+        with suppress(BlockingIOError):
+            os.read(self._reader, 4096)
+
+    def enable_interrupt(self) -> None:
+        self._is_asked.set()
+
+    def tree_value(self, name: str) -> int | None:
+        """Return a parameter of the DMA, which the file beside the bitstream has (`.hwh`)."""
+        text = self._parameters.get(name.replace("xlnx,", "c_").replace("-", "_"))
+        return None if text is None else int(text)
+
+    def close(self) -> None:
+        self._is_open = False
+        self._is_asked.set()
+        self._thread.join()
+        os.close(self._reader)
+        os.close(self._writer)
+
+
+class _Buffer:
+    """Memory of PYNQ, as a :class:`.DmaBuffer`; it is freed with the last reference to it."""
+
+    name = "buffer"
+    size = _BUFFER_BYTES
+
+    def __init__(self) -> None:
+        self._array = allocate((self.size,), "u1")
+        self.address = int(self._array.device_address)
+        self.data = memoryview(self._array)
+
+    def to_device(self, offset: int, size: int, *, is_written: bool) -> None:
+        # What the DMA overwrites is written back, too: no line of the cache may follow later.
+        self._array[offset : offset + size].flush()
+
+    def to_processor(self, offset: int, size: int) -> None:
+        self._array[offset : offset + size].invalidate()
+
+    def close(self) -> None:
+        self.data.release()
+        del self._array

@@ -1,0 +1,336 @@
+# amaranth: UnusedElaboratable=no
+"""Projects of boards: block design and IP, device tree, commands, notebook."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import types
+from collections import Counter
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from firm_hdl.cli import main
+from firm_hdl.export.vivado_ip import ip_files
+from firm_hdl.node import Node, read_description
+from firm_hdl.node.build import node_ip
+from firm_hdl.node.top import node_ports
+from tests.node.accelerators import echo_text
+from tests.node.boards.dma_model import AxiDma
+from tests.node.bridge.fakes import FakeNode
+from tests.node.samples import PACKAGES
+from tests.tools import need
+
+LOOP = """\
+node: little
+link: {kind: axi_dma, buffer_bytes: 65520}
+bus_bytes: BUS
+clock_mhz: 75
+accelerator: firm_hdl.node.loop:Loop
+subscribe: {/cmd: {type: std_msgs/msg/Bool}}
+publish: {/back: {type: std_msgs/msg/Bool}}
+"""
+
+
+def init(board, text, folder, name="node.yaml"):
+    """Write a description and its project; return both paths."""
+    file, out = folder / name, folder / "out"
+    file.write_text(text)
+    assert main(["board", "init", board, str(file), "-o", str(out)]) == 0
+    return file, out
+
+
+# Pins by the names of the manuals: PG201, PG082, PG021, PG164, PG247, PB046.
+PINS = {
+    "zynq_ultra_ps_e": (
+        "in maxihpm0_fpd_aclk saxihp0_fpd_aclk pl_ps_irq0 out pl_clk0 pl_resetn0 "
+        "master M_AXI_HPM0_FPD slave S_AXI_HP0_FPD"
+    ),
+    "processing_system7": (
+        "in M_AXI_GP0_ACLK S_AXI_HP0_ACLK out FCLK_CLK0 FCLK_RESET0_N "
+        "master M_AXI_GP0 slave S_AXI_HP0"
+    ),
+    "axi_dma": (
+        "in s_axi_lite_aclk m_axi_mm2s_aclk m_axi_s2mm_aclk axi_resetn out mm2s_prmry_reset_out_n "
+        "s2mm_prmry_reset_out_n mm2s_introut s2mm_introut master M_AXI_MM2S M_AXI_S2MM M_AXIS_MM2S "
+        "slave S_AXI_LITE S_AXIS_S2MM"
+    ),
+    "proc_sys_reset": "in slowest_sync_clk ext_reset_in out peripheral_aresetn",
+    "smartconnect": "in aclk aresetn slave S00_AXI S01_AXI master M00_AXI",
+    "util_vector_logic": "in Op1 Op2 out Res",
+}
+
+
+def pins_of(words):
+    """Return the direction of each pin, and whether it is an interface."""
+    found, way = {}, ""
+    for word in words.split():
+        if word in ("in", "out", "master", "slave"):
+            way = word
+        else:
+            found[word] = way
+    return found
+
+
+def node_pins(component):
+    """Read pins of IP from its XML: streams, and ports that are in none."""
+    space = "{http://www.spiritconsortium.org/XMLSchema/SPIRIT/1685-2009}"
+    found, inside, widths = {}, set(), {}
+    for bus in component.iter(f"{space}busInterface"):
+        name = bus.find(f"{space}name").text
+        ports = [each.text for each in bus.iterfind(f".//{space}physicalPort/{space}name")]
+        if bus.find(f"{space}busType").get(f"{space}name") == "axis":
+            found[name] = "master" if bus.find(f"{space}master") is not None else "slave"
+            inside |= {*ports}
+    for port in component.iter(f"{space}port"):
+        name, way = port.find(f"{space}name").text, port.find(f".//{space}direction").text
+        left = port.find(f".//{space}left")
+        widths[name] = 1 if left is None else int(left.text) + 1
+        if name not in inside:
+            found[name] = way
+    names = [component.find(f"{space}{each}").text for each in ("vendor", "library", "name")]
+    return ":".join(names), found, widths
+
+
+RECORDER = """\
+proc unknown {args} {puts [join $args \\x1f]; return [lindex $args end]}
+proc get_board_parts {args} {return xilinx.com:k26c:part0:1.4}
+proc get_property {name object} {return [expr {$name eq "PROGRESS" ? "100%" : "0.5"}]}
+source design.tcl
+"""
+
+
+@pytest.mark.parametrize(("board", "bus"), [("kria", 8), ("pynq", 1)])
+def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus):
+    file, out = init(board, LOOP.replace("BUS", str(bus)), tmp_path)
+    description = read_description(file)
+    ip = node_ip(description, "little", node_ports(Node(description)), (), {})
+    component = ElementTree.fromstring(ip_files(ip)["ip/little/component.xml"])
+    places = ("system.runs/impl_1", "system.gen/sources_1/bd/system/hw_handoff")
+    for place, made in zip(places, ("system_wrapper.bit", "system.hwh"), strict=True):
+        (out / "build/vivado" / place).mkdir(parents=True)
+        (out / "build/vivado" / place / made).write_text(made)
+    (out / "run.tcl").write_text(RECORDER)
+    command = [need("tclsh", shutil.which("tclsh")), "run.tcl"]
+    done = subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (out / "build/little.bit").is_file() and (out / "build/little.hwh").is_file() == (
+        board == "pynq"
+    )
+    calls = [line.split("\x1f") for line in re.split(r"\n(?=\w+\x1f)", done.stdout)]
+    (repository,) = (call[2] for call in calls if call[:2] == ["set_property", "ip_repo_paths"])
+    assert repository == str(out / "build/little/ip")
+    vlnv, own, widths = node_pins(component)
+    kinds = {call[-1]: call[-2] for call in calls if call[0] == "create_bd_cell"}
+    assert kinds["node"] == vlnv
+    assert kinds["ps"].endswith("zynq_ultra_ps_e" if board == "kria" else "processing_system7")
+    ways = {
+        f"{cell}/{pin}": way
+        for cell, kind in kinds.items()
+        for pin, way in (own if cell == "node" else pins_of(PINS[kind.split(":")[2]])).items()
+    }
+    # Inputs that are open on purpose: one of a SmartConnect with one slave, and no pins of a node.
+    del ways["control/S01_AXI"]
+    wires = Counter()
+    for call in calls:
+        if call[0].startswith("connect_bd_"):
+            one, other = call[1:]
+            both = {ways[one], ways[other]}
+            assert both == ({"out", "in"} if call[0] == "connect_bd_net" else {"master", "slave"})
+            wires.update(each for each in (one, other) if ways[each] != "out")
+    assert wires == {each: 1 for each, way in ways.items() if way != "out"}
+    clock = {"kria": "ps/pl_clk0", "pynq": "ps/FCLK_CLK0"}[board]
+    nets = {tuple(call[1:]) for call in calls if call[0] == "connect_bd_net"}
+    assert {to for by, to in nets if by == clock} == {
+        pin for pin, way in ways.items() if way == "in" and re.search("clk$", pin, re.I)
+    }
+    for channel in ("mm2s", "s2mm"):
+        assert (f"dma/{channel}_prmry_reset_out_n", f"node/{channel}_aresetn") in nets
+    streams = {frozenset(call[1:]) for call in calls if call[0] == "connect_bd_intf_net"}
+    assert {"dma/M_AXIS_MM2S", "node/s_axis"} in streams
+    assert {"dma/S_AXIS_S2MM", "node/m_axis"} in streams
+    settings = {
+        call[-1]: call[2].split() for call in calls if call[:2] == ["set_property", "-dict"]
+    }
+    dma = dict(zip(settings["dma"][::2], settings["dma"][1::2], strict=True))
+    width = widths["s_axis_tdata"]
+    assert dma["CONFIG.c_m_axis_mm2s_tdata_width"] == f"{{{width}}}" and width == 8 * bus
+    assert dma["CONFIG.c_include_sg"] == "{0}" and dma["CONFIG.c_sg_length_width"] == "{16}"
+    assert "{75}" in settings["ps"]
+
+
+BASE = """\
+/dts-v1/;
+/ {
+	#address-cells = <2>;
+	#size-cells = <2>;
+	gic: interrupt-controller { phandle = <1>; interrupt-controller; #interrupt-cells = <3>; };
+	zynqmp_clk: clock-controller { phandle = <2>; #clock-cells = <1>; };
+	zynqmp_reset: reset-controller { phandle = <3>; #reset-cells = <1>; };
+	fpga_full: fpga-full { };
+	amba: axi { #address-cells = <2>; #size-cells = <2>; };
+};
+"""
+
+
+@pytest.mark.parametrize("name", ["node.yaml", "it's $my #1 node.yaml"])
+def test_make_makes_what_xmutil_loads(tmp_path, monkeypatch, name):
+    for tool in ("make", "dtc", "fdtget", "fdtoverlay"):
+        need(tool, shutil.which(tool))
+    file, out = init("kria", LOOP.replace("BUS", "8"), tmp_path, name)
+    tools = {
+        "firm-hdl": "mkdir -p build/little; file=build/little/manifest.json; "
+        '[ -e $file ] || printf "%s\\n" "$@" >$file',
+        "vivado": 'echo "$@" >>vivado.txt; echo bits >build/little.bit',
+        "bootgen": 'cp "$(sed -n "s/.* = pl\\] //p" "$2")" "$6"',
+    }
+    for tool, text in tools.items():
+        (tmp_path / tool).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / tool).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{Path('/bin')}:{Path('/usr/bin')}")
+    for _ in range(2):
+        done = subprocess.run(["make"], cwd=out, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    asked = (out / "build/little/manifest.json").read_text().splitlines()
+    assert asked[:2] == ["node", "build"] and (out / asked[2]).samefile(file)
+    assert len((out / "vivado.txt").read_text().splitlines()) == 1
+    app = out / "app/little"
+    assert {each.name for each in app.iterdir()} == {
+        *("little.bit.bin", "little.dtbo", "shell.json")
+    }
+    assert (app / "little.bit.bin").read_text() == "bits\n"
+    assert json.loads((app / "shell.json").read_text()) == {
+        "shell_type": "XRT_FLAT",
+        "num_slots": "1",
+    }
+    # The overlay finds its labels in a tree like that of a Kria.
+    (tmp_path / "base.dts").write_text(BASE)
+    whole = str(tmp_path / "whole.dtb")
+    for command in (
+        ["dtc", "-q", "-@", "-O", "dtb", "-o", "base.dtb", "base.dts"],
+        ["fdtoverlay", "-i", "base.dtb", "-o", whole, str(app / "little.dtbo")],
+    ):
+        subprocess.run(command, cwd=tmp_path, check=True)
+
+    numbers = {
+        "/axi/dma@a0000000 reg": "0 a0000000 0 10000",
+        "/axi/dma@a0000000 interrupts": "0 59 4",
+        "/axi/dma@a0000000 interrupt-parent": "1",
+        "/axi/dma@a0000000 xlnx,sg-length-width": "10",
+        "/axi/udmabuf0 size": "100000",
+        "/axi/clocking0 assigned-clock-rates": f"{75_000_000:x}",
+        "/fpga-full resets": "3 74",
+    }
+    for kind, wanted in (("x", numbers), ("s", {"/fpga-full firmware-name": "little.bit.bin"})):
+        words = " ".join(wanted).split()
+        command = ["fdtget", "-t", kind, whole, *words]
+        read = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+        assert read.splitlines() == [*wanted.values()]
+
+
+class Memory(np.ndarray):
+    """A buffer of PYNQ, of which the DMA sees what was flushed."""
+
+    def __array_finalize__(self, other):
+        self.shared = getattr(other, "shared", None)
+
+    def _part(self):
+        start = self.__array_interface__["data"][0] - self.shared[0]
+        assert start % 64 == self.nbytes % 64 == 0
+        return slice(start, start + self.nbytes)
+
+    def flush(self):
+        self.shared[1][self._part()] = self
+
+    def invalidate(self):
+        self[:] = self.shared[1][self._part()]
+
+
+def fake_pynq(node, address=0x1000_0000, size=1 << 18):
+    """Return a module like PYNQ's: an overlay with a DMA, and a node behind it."""
+    seen, lock = np.zeros(size, "u1"), threading.RLock()
+    dma = AxiDma(memoryview(seen), address, lambda frame: dma.packets.extend(node.take(frame)))
+
+    class Mmio:
+        def __init__(self, where, length):
+            assert (where, length) == (0x4040_0000, 0x10000)
+
+        def read(self, offset):
+            with lock:
+                dma.step()
+                return dma.read(offset)
+
+        def write(self, offset, value):
+            with lock:
+                dma.write(offset, value)
+
+    class Overlay:
+        def __init__(self, file):
+            assert file == "echo.bit"
+            parameters = {"c_sg_length_width": "16"}
+            self.ip_dict = {
+                "dma": {
+                    "phys_addr": 0x4040_0000,
+                    "addr_range": 0x10000,
+                    "parameters": parameters,
+                }
+            }
+
+    def allocate(shape, dtype):
+        array = np.zeros(shape, dtype).view(Memory)
+        array.shared, array.device_address = (array.__array_interface__["data"][0], seen), address
+        return array
+
+    module = types.ModuleType("pynq")
+    module.MMIO, module.Overlay, module.allocate = Mmio, Overlay, allocate
+    dma.length_bits = 16
+    return module
+
+
+def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
+    text = echo_text(link="axi_dma", paths=str(PACKAGES))
+    file, out = init("pynq", text, tmp_path)
+    book = json.loads((out / "echo.ipynb").read_text())
+    cells = ["".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code"]
+    node = FakeNode(read_description(file).fingerprint)
+    monkeypatch.setitem(sys.modules, "pynq", fake_pynq(node))
+    monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq", raising=False)
+    monkeypatch.chdir(out)
+    values = {}
+    shown = []
+    for cell in cells:
+        *lines, last = cell.splitlines()
+        exec("\n".join(lines), values)
+        try:
+            shown.append(eval(last, values))
+        except SyntaxError:
+            exec(last, values)
+    assert values["packet"].hex() in shown and any(values["packet"][4:])
+    assert any("std_msgs__msg__String" in type(each).__name__ for each in shown)
+    assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", capsys.readouterr().out)
+    # Anything that names PYNQ's module would be stale in other tests.
+    monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq")
+
+
+def test_what_is_no_project_is_refused_and_changes_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["board", "init", "kv261"]) == 1
+    assert "there are no projects for 'kv261', but for kria, kv260" in capsys.readouterr().err
+    Path("n.yaml").write_text("node: n\nlink: udp\nsubscribe: {/a: {type: std_msgs/msg/Bool}}\n")
+    assert main(["board", "init", "KV260", "n.yaml"]) == 1
+    assert "n.yaml:2:7: error: a project for 'kria' needs the link 'axi_dma'" in (
+        capsys.readouterr().err
+    )
+    assert [each.name for each in tmp_path.iterdir()] == ["n.yaml"]
+    assert main(["board", "init", "kria"]) == 0
+    before = {each: each.read_text() for each in Path("twist_kria").iterdir()}
+    assert main(["board", "init", "kria"]) == 1
+    assert "'twist_kria' is already there, and stays as it is" in capsys.readouterr().err
+    assert before == {each: each.read_text() for each in Path("twist_kria").iterdir()}
