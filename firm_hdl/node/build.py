@@ -48,7 +48,7 @@ from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
 
-__all__ = ["build_node", "check_units", "design_name", "node_ip", "placed_on"]
+__all__ = ["build_node", "check_units", "design_name", "placed_on"]
 
 SUMMARY = "summary.txt"
 DATASHEET = "datasheet.html"
@@ -248,7 +248,7 @@ def _files(
         **benches,
         **documents,
         **(
-            ip_files(node_ip(description, name, ports, messages, {**own.texts, **verilog}))
+            ip_files(_ip(description, name, ports, messages, {**own.texts, **verilog}))
             if ip
             else {}
         ),
@@ -276,7 +276,7 @@ def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict
     }
 
 
-def node_ip(
+def _ip(
     description: Description,
     name: str,
     ports: Sequence[ComponentPort],

@@ -139,7 +139,7 @@ def write_project(
         "clock_hz": round(description.clock_hz),
         "node": node,
         "node_word": shlex.quote(node),
-        "node_file": os.path.basename(node),
+        "node_file": shlex.quote(os.path.basename(node)),
         "has_accelerator": bool(description.accelerator),
     }
     files = {

@@ -13,10 +13,10 @@ from firm_hdl.node.description import Description
 __all__ = ["notebook"]
 
 _OPEN = """\
-from firm_hdl.node import read_description
+{head}from firm_hdl.node import read_description
 from firm_hdl.node.bridge import Client
 
-description = read_description(file)
+description = read_description({file})
 try:
     from firm_hdl.node.boards.pynq import NodeOverlay
 except ImportError:
@@ -27,6 +27,9 @@ else:
     board = NodeOverlay("{name}.bit").board(description)
 
 node = Client(description, board, report=print).open()"""
+
+_MOST_BYTES = 256
+"""Of a packet that is nice to look at."""
 
 _GRAPH = """\
 In a graph of ROS 2, the node is there for other nodes. PYNQ needs no ROS for that:
@@ -52,7 +55,7 @@ def notebook(
     file : str
         The description, relative to the notebook. On the board, it is beside it.
     sample : sequence of bytes
-        Packets of the first subscription. The shortest that has values is sent.
+        Packets of the first subscription. One with many values is sent.
     """
     cells: list[dict[str, Any]] = [
         {
@@ -76,17 +79,15 @@ def _cells(
         f"# The node {description.node}\n\nWith PYNQ, this loads the overlay. Elsewhere, the node "
         "is simulated; to compile it takes a minute or more at first.",
     )
-    copy = os.path.basename(file)
-    if copy == file:
-        yield "code", f"file = {file!r}\n\n" + _OPEN.format(name=name)
-    else:
-        # On the board, it has been copied.
-        here = f"file = {copy!r} if os.path.exists({copy!r}) else {file!r}"
-        yield "code", f"import os\n\n{here}\n\n" + _OPEN.format(name=name)
+    head, place, copy = "", repr(file), repr(os.path.basename(file))
+    if place != copy:
+        # On the board, it was copied beside the notebook.
+        head, place = "import os\n\n", f"{copy} if os.path.exists({copy}) else {place}"
+    yield "code", _OPEN.format(head=head, file=place, name=name)
     came = next((each for each in description.topics if each.kind == "subscribe"), None)
     sent = next((each for each in description.topics if each.kind == "publish"), None)
     if came is not None and sample:
-        packet = min(sample, key=lambda each: (not any(each[4:]), len(each)))
+        packet = max(sample, key=lambda each: (len(each) <= _MOST_BYTES, len({*each})))
         yield "markdown", f"A packet is a serialized message. This one is a {came.type}."
         yield "code", f"packet = bytes.fromhex({packet.hex()!r})"
         if store := _store_of(description, came.type):
