@@ -191,7 +191,7 @@ class ZynqBoard(Board):
         self._there()
         self._waiting += frames
         self._waiting_bytes += sum(map(len, frames))
-        self._send_next()
+        self._send_waiting()
         return True
 
     def receive(self) -> list[bytes]:
@@ -200,7 +200,7 @@ class ZynqBoard(Board):
         try:
             for _ in range(_MOST_AT_ONCE):
                 # Both directions go on, however much the node sends.
-                self._send_next()
+                self._send_waiting()
                 if not self._has_completed("S2MM"):
                     break
                 frames.append(self._received())
@@ -259,13 +259,13 @@ class ZynqBoard(Board):
         self._there()[1].to_device(start, self._part_bytes, is_written=True)
         self._transfer("S2MM", start, self._most)
 
-    def _send_next(self) -> None:
-        """Send what waits, if nothing is under way."""
+    def _send_waiting(self) -> None:
+        """Send what waits until a frame is under way; the DMA is often faster than this loop."""
         buffer = self._there()[1]
-        if self._sends and not self._has_completed("MM2S"):
-            return
-        self._sends = bool(self._waiting)
-        if self._sends:
+        while not self._sends or self._has_completed("MM2S"):
+            self._sends = bool(self._waiting)
+            if not self._sends:
+                return
             frame = self._waiting.popleft()
             self._waiting_bytes -= len(frame)
             buffer.data[: len(frame)] = frame

@@ -164,8 +164,9 @@ def test_each_error_of_the_dma_is_said_counted_and_survived(chip, channel, bit, 
     made.graph.say(HEARD, b"again")
     assert run_until(made, lambda: made.graph.got and made.graph.got[-1][1] == b"again", 10)
     made.run(seconds=0)
-    assert [packet for _, packet in made.graph.got] == [b"again"]
-    assert made.counters.dropped.total() == 1 and made.side.on_the_way["DMA errors"] == 1
+    # The transfer that fails may be that of a request, and then the message waits.
+    lost = 2 - len(made.graph.got)
+    assert lost <= made.counters.dropped.total() <= 1 and made.side.on_the_way["DMA errors"] == 1
 
 
 def test_what_came_before_an_error_is_received(chip):
@@ -180,14 +181,17 @@ def test_what_came_before_an_error_is_received(chip):
 
 
 def test_a_node_that_sends_all_the_time_holds_up_nothing(chip):
-    """Both directions go on with each interrupt."""
+    """Both directions go on as long as the DMA is fast enough, without an interrupt for each."""
     came = []
     chip.node.take = lambda frame: came.append(frame) or []
     board = chip.board()
     board.open()
+    assert board.send([b"a", b"b"]) and came == [b"a", b"b"]
+    chip.dma.streams.has_sent = False
+    assert board.send([b"c", b"d", b"e"]) and came[2:] == [b"c"]
+    chip.dma.streams.has_sent = True
     chip.dma.packets += [b"packet"] * 3
-    assert board.send([b"a", b"b", b"c"]) and len(board.receive()) == 3
-    assert came == [b"a", b"b", b"c"]
+    assert len(board.receive()) == 3 and came[2:] == [b"c", b"d", b"e"]
     board.close()
 
 
