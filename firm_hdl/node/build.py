@@ -40,6 +40,7 @@ from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
 from firm_hdl.node.benches import FRAMES, LinkScript, Stimuli, bench_core, bench_files, link_script
+from firm_hdl.node.boards.zynq_header import zynq_header
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.copies import AcceleratorFiles, accelerator_files
 from firm_hdl.node.node import Node
@@ -237,6 +238,7 @@ def _files(
         **own.headers,
         **vhdl_folder(vhdl),
         SUMMARY: summary(description) + "\n",
+        **_host_files(description, name),
         **core_file(
             name,
             {**node.files, **records},
@@ -253,6 +255,13 @@ def _files(
             else {}
         ),
     }
+
+
+def _host_files(description: Description, name: str) -> dict[str, str]:
+    """Write what a program on the processor beside the node includes."""
+    if description.link.kind != "axi_dma":
+        return {}
+    return {f"{name}_zynq.hpp": zynq_header(description, name)}
 
 
 def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict[str, Any]:

@@ -316,9 +316,12 @@ def test_node_with_a_stream_is_ip(tmp_path, capsys, link):
     assert main(command) == 0
     folder = tmp_path / "out" / "demo" / "ip" / "demo"
     found, left = check_ip(folder, tmp_path / "work")
+    header = folder.parents[1] / "demo_zynq.hpp"
+    assert header.exists() == (link == "axi_dma")
     if link == "stream":
         assert found["m_axis"][2]["TDEST"] == "m_axis_tdest"
     else:
+        assert "topic_cmd = 1;" in header.read_text()
         # They are ports without an interface.
         assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
         left -= {"mm2s_aresetn", "s2mm_aresetn"}

@@ -29,15 +29,17 @@ class BridgeProcess:
         The Python that runs it.
     variables : dict
         Further variables of the environment.
+    setup : str
+        Python that is run before.
     """
 
-    def __init__(self, file, *arguments, python=sys.executable, variables=None):
+    def __init__(self, file, *arguments, python=sys.executable, variables=None, setup=""):
         paths = [str(ROOT), *(path for path in sys.path if path.endswith("site-packages"))]
         variables = dict(variables or {})
         paths.append(variables.pop("PYTHONPATH", ""))
-        command = [python, "-c", "import sys; from firm_hdl.cli import main; sys.exit(main())"]
+        code = f"import sys; {setup}from firm_hdl.cli import main; sys.exit(main())"
         self.process = subprocess.Popen(
-            [*command, "node", "run", str(file), *arguments],
+            [python, "-c", code, "node", "run", str(file), *arguments],
             stderr=subprocess.PIPE,
             text=True,
             cwd=ROOT,

@@ -15,12 +15,12 @@ IMU = {"type": "imu", "to": "/imu_in", "back": "/imu_out", "depth": 0}
 CLOUD = {"type": "cloud", "bytes": 20_000, "to": "/cloud_in", "back": "/cloud_out", "depth": 0}
 
 
-def check_trips(running, release, *topics, **options):
+def check_trips(running, release, *topics, timeout=300, **options):
     """Let messages go through a bridge and back; all come, and the account has no loss."""
     with Peer(release, "trip", topics=topics, **options) as peer:
         assert peer.next(90) == {"begins": True}
         # A simulation on a busy machine takes minutes for 300 clouds.
-        numbers = peer.result(300)["numbers"]
+        numbers = peer.result(timeout)["numbers"]
     account = running.stop()
     for topic, came in zip(topics, numbers, strict=True):
         wanted = list(range(topic["count"]))

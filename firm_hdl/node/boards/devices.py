@@ -17,6 +17,8 @@ __all__ = ["DmaBuffer", "Uio"]
 
 _ROOT = Path("/")
 
+_TO_DEVICE, _TO_PROCESSOR = "sync_for_device", "sync_for_cpu"
+
 
 class Uio:
     """The registers of a device, and its interrupt. Nobody else can open it meanwhile.
@@ -60,9 +62,21 @@ class Uio:
         self._registers[offset // 4] = value
 
     def take_interrupt(self) -> None:
-        """Forget the interrupts so far. No further one comes until they are enabled again."""
-        with suppress(BlockingIOError):
+        """Forget the interrupts so far. No further one comes until they are enabled again.
+
+        Raises
+        ------
+        BoardError
+            If the device is gone, as its driver or its part of the device tree was removed.
+        """
+        try:
             os.read(self._file, 4)
+        except BlockingIOError:
+            return
+        except OSError as error:
+            # What an access to registers that are gone does is not known.
+            self._registers = memoryview(bytearray(self._registers.nbytes)).cast("I")
+            raise BoardError(f"'{self._folder.name}' is gone: {_why(error)}") from None
 
     def enable_interrupt(self) -> None:
         """Let interrupts come; one that waits comes at once.
@@ -94,7 +108,7 @@ class Uio:
 
 
 class DmaBuffer:
-    """Memory of a fixed address that both a processor and a DMA access.
+    """Memory of a fixed address that both a processor and a DMA access. Nobody else can open it.
 
     The processor has it in its caches, unless the driver says that they are coherent. So a part is
     handed over before the other side accesses it. Parts begin and end at multiples of 64.
@@ -125,37 +139,46 @@ class DmaBuffer:
         path = root / "dev" / name
         self.size = _number(self._folder / "size", 10)
         self.address = _number(self._folder / "phys_addr", 0)
-        self._is_coherent = bool(_number(self._folder / "dma_coherent", 0))
+        is_coherent = bool(_number(self._folder / "dma_coherent", 0))
         # With O_SYNC, memory would be uncached, where processors refuse unaligned copies.
-        file = _opened(path, os.O_RDWR)
+        self._file = _opened(path, os.O_RDWR)
         try:
-            self._map = mmap.mmap(file, self.size)
+            self._map = mmap.mmap(self._file, self.size)
         except (OSError, ValueError) as error:
+            os.close(self._file)
             raise BoardError(f"cannot map '{path}': {_why(error)}") from None
-        finally:
-            os.close(file)
         self.data = memoryview(self._map)
+        # They stay open, as each frame takes several orders.
+        self._orders: dict[str, int] = {}
+        for order in () if is_coherent else (_TO_DEVICE, _TO_PROCESSOR):
+            try:
+                self._orders[order] = os.open(self._folder / order, os.O_WRONLY)
+            except OSError as error:
+                self.close()
+                raise BoardError(f"cannot open '{self._folder / order}': {_why(error)}") from None
 
     def to_device(self, offset: int, size: int, *, is_written: bool) -> None:
         """Hand a part over to the DMA, which writes it or reads it."""
-        self._sync("sync_for_device", offset, size, 2 if is_written else 1)
+        self._sync(_TO_DEVICE, offset, size, 2 if is_written else 1)
 
     def to_processor(self, offset: int, size: int) -> None:
         """Take a part back that the DMA has written."""
-        self._sync("sync_for_cpu", offset, size, 2)
+        self._sync(_TO_PROCESSOR, offset, size, 2)
 
-    def _sync(self, attribute: str, offset: int, size: int, direction: int) -> None:
-        if self._is_coherent:
+    def _sync(self, order: str, offset: int, size: int, direction: int) -> None:
+        if not self._orders:
             return
         # Offset, size, direction and the order itself in one number.
         text = f"0x{offset:08X}{size & 0xFFFF_FFF0 | direction << 2 | 1:08X}"
         try:
-            (self._folder / attribute).write_text(text)
+            os.pwrite(self._orders[order], text.encode(), 0)
         except OSError as error:
-            raise BoardError(f"cannot write '{self._folder / attribute}': {_why(error)}") from None
+            raise BoardError(f"cannot write '{self._folder / order}': {_why(error)}") from None
 
     def close(self) -> None:
         """Close the buffer; its memory stays."""
+        for file in (self._file, *self._orders.values()):
+            os.close(file)
         self.data.release()
         self._map.close()
 

@@ -1,6 +1,7 @@
 """A node in the chip of the processor: frames in memory, which an AXI DMA of Xilinx moves.
 
-The DMA is in direct register mode. Names of registers and bits are those of its manual, PG021.
+The DMA is in direct register mode: it has no scatter-gather engine. Names of registers and bits are
+those of its manual, PG021.
 """
 
 from __future__ import annotations
@@ -31,6 +32,9 @@ _ERRORS = {
 
 _LENGTH_BITS = "xlnx,sg-length-width"
 """The property of the DMA in the device tree, also without scatter-gather."""
+
+_LENGTHS_BITS = range(8, 27)
+"""Widths that its length register may have."""
 
 _ALIGNMENT = 64
 _ROOM_BYTES = 1 << 16
@@ -104,22 +108,25 @@ class ZynqBoard(Board):
     ) -> None:
         super().__init__(name, frame_bytes)
         self._names, self._devices = (uio, buffer), devices
-        self._part_bytes = -(-frame_bytes // _ALIGNMENT) * _ALIGNMENT
+        self._most, self._part_bytes = frame_bytes, _aligned(frame_bytes)
         self._opened: tuple[Registers, Buffer] | None = None
         self._waiting: deque[bytes] = deque()
-        self._sends = False
+        self._waiting_bytes = 0
+        self._sends = self._has_stopped = False
         # The part that the DMA writes.
         self._written = 0
 
     def open(self) -> None:
         self.close()
         self._waiting.clear()
-        self._sends = False
+        self._waiting_bytes = 0
+        self._sends = self._has_stopped = False
         self._opened = self._devices(*self._names)
         try:
             self._check_sizes(*self._opened)
             self._start(self._opened[0])
             self._receive_into(1)
+            self._check_length(self._opened[0])
             self._opened[0].take_interrupt()
             self._opened[0].enable_interrupt()
         except BoardError:
@@ -131,25 +138,34 @@ class ZynqBoard(Board):
         if buffer.size < needed:
             raise BoardError(
                 f"'{buffer.name}' has {buffer.size} bytes, and {needed} are needed: 3 buffers for "
-                f"frames of up to {self.frame_bytes} bytes"
+                f"frames of up to {self._most} bytes"
+            )
+        if buffer.address % _ALIGNMENT:
+            raise BoardError(
+                f"'{buffer.name}' begins at {buffer.address:#x}, which is no multiple of "
+                f"{_ALIGNMENT}"
             )
         bits = registers.tree_value(_LENGTH_BITS)
-        if bits is not None and self._most() >> bits:
-            raise BoardError(
-                f"the DMA has lengths of {bits} bits, up to {(1 << bits) - 1} bytes, and frames "
-                f"have up to {self.frame_bytes}; widen its buffer length register, or give the "
-                "link smaller 'buffer_bytes'"
-            )
+        if bits is not None and self._most >> bits:
+            raise self._too_narrow(bits)
 
-    def _most(self) -> int:
-        assert self.frame_bytes is not None
-        return self.frame_bytes
+    def _check_length(self, registers: Registers) -> None:
+        """Check that the DMA has kept the length of the buffer; not every device tree tells."""
+        kept = registers.read(_AT["S2MM"] + _LENGTH)
+        for bits in _LENGTHS_BITS:
+            if self._most >> bits and kept == self._most & (1 << bits) - 1:
+                raise self._too_narrow(bits)
+
+    def _too_narrow(self, bits: int) -> BoardError:
+        return BoardError(
+            f"the DMA has lengths of {bits} bits, up to {(1 << bits) - 1} bytes, and frames "
+            f"have up to {self._most}; widen its buffer length register, or give the "
+            "link smaller 'buffer_bytes'"
+        )
 
     def _start(self, registers: Registers) -> None:
         """Reset the DMA, and let both channels run."""
-        # A reset of one channel resets both.
-        registers.write(_AT["MM2S"] + _DMACR, _RESET)
-        if not _clears(registers, _AT["MM2S"] + _DMACR, _RESET):
+        if not _reset(registers):
             raise BoardError("the reset of the DMA does not end; does its clock run?")
         for channel, at in _AT.items():
             control, status = registers.read(at + _DMACR), registers.read(at + _DMASR)
@@ -169,23 +185,30 @@ class ZynqBoard(Board):
 
     @property
     def has_room(self) -> bool:
-        return sum(map(len, self._waiting)) < _ROOM_BYTES
+        return self._waiting_bytes < _ROOM_BYTES
 
     def send(self, frames: Sequence[bytes]) -> bool:
         self._there()
         self._waiting += frames
-        self._send_next()
+        self._waiting_bytes += sum(map(len, frames))
+        self._send_waiting()
         return True
 
     def receive(self) -> list[bytes]:
         registers, frames = self._there()[0], []
         registers.take_interrupt()
-        for _ in range(_MOST_AT_ONCE):
-            if not self._has_completed("S2MM"):
-                break
-            frames.append(self._received())
-        self._send_next()
-        registers.enable_interrupt()
+        try:
+            for _ in range(_MOST_AT_ONCE):
+                # Both directions go on, however much the node sends.
+                self._send_waiting()
+                if not self._has_completed("S2MM"):
+                    break
+                frames.append(self._received())
+            registers.enable_interrupt()
+        except BoardError:
+            # The next call says it again.
+            if not frames:
+                raise
         return frames
 
     def close(self) -> None:
@@ -193,7 +216,7 @@ class ZynqBoard(Board):
             return
         (registers, buffer), self._opened = self._opened, None
         # The DMA must not write into memory that others may use.
-        registers.write(_AT["MM2S"] + _DMACR, _RESET)
+        _reset(registers)
         registers.close()
         buffer.close()
 
@@ -212,11 +235,10 @@ class ZynqBoard(Board):
         """
         registers, at = self._there()[0], _AT[channel] + _DMASR
         status = registers.read(at)
-        problems = [text for bit, text in _ERRORS.items() if status & bit]
-        if problems or status & _HALTED:
-            self.counters["DMA errors"] += 1
-            why = "; ".join(problems) or "its DMASR has no error"
-            raise BoardError(f"{channel} of the DMA has stopped ({why}), and is reset")
+        if status & (_HALTED | sum(_ERRORS)):
+            self.counters["DMA errors"] += not self._has_stopped
+            self._has_stopped = True
+            raise BoardError(f"the DMA has stopped ({_problems(registers)}), and is reset")
         if status & _IOC_IRQ:
             registers.write(at, _IOC_IRQ)
         return bool(status & _IOC_IRQ)
@@ -225,29 +247,29 @@ class ZynqBoard(Board):
         """Return the frame that has come, after the DMA got the other part."""
         registers, buffer = self._there()
         # The DMA has replaced the size of the part by that of the frame.
-        size = min(registers.read(_AT["S2MM"] + _LENGTH), self._most())
+        size = min(registers.read(_AT["S2MM"] + _LENGTH), self._most)
         start = self._written * self._part_bytes
         self._receive_into(3 - self._written)
-        buffer.to_processor(start, self._part_bytes)
+        buffer.to_processor(start, _aligned(size))
         return bytes(buffer.data[start : start + size])
 
     def _receive_into(self, part: int) -> None:
         self._written = part
         start = part * self._part_bytes
         self._there()[1].to_device(start, self._part_bytes, is_written=True)
-        self._transfer("S2MM", start, self._most())
+        self._transfer("S2MM", start, self._most)
 
-    def _send_next(self) -> None:
-        """Send what waits, if nothing is under way."""
+    def _send_waiting(self) -> None:
+        """Send what waits until a frame is under way; the DMA is often faster than this loop."""
         buffer = self._there()[1]
-        if self._sends and not self._has_completed("MM2S"):
-            return
-        self._sends = bool(self._waiting)
-        if self._sends:
+        while not self._sends or self._has_completed("MM2S"):
+            self._sends = bool(self._waiting)
+            if not self._sends:
+                return
             frame = self._waiting.popleft()
+            self._waiting_bytes -= len(frame)
             buffer.data[: len(frame)] = frame
-            size = -(-len(frame) // _ALIGNMENT) * _ALIGNMENT
-            buffer.to_device(0, size, is_written=False)
+            buffer.to_device(0, _aligned(len(frame)), is_written=False)
             self._transfer("MM2S", 0, len(frame))
 
     def _transfer(self, channel: Channel, start: int, size: int) -> None:
@@ -260,6 +282,27 @@ class ZynqBoard(Board):
             if registers.read(at + _ADDRESS_MSB) != high:
                 raise BoardError(f"the DMA has too few bits for the address {address:#x}")
         registers.write(at + _LENGTH, size)
+
+
+def _aligned(size: int) -> int:
+    return -(-size // _ALIGNMENT) * _ALIGNMENT
+
+
+def _problems(registers: Registers) -> str:
+    """Describe the errors of the DMA: that of one channel halts both."""
+    found = [
+        f"{channel}: {text}"
+        for channel, at in _AT.items()
+        for bit, text in _ERRORS.items()
+        if registers.read(at + _DMASR) & bit
+    ]
+    return "; ".join(found) or "no DMASR has an error"
+
+
+def _reset(registers: Registers) -> bool:
+    """Reset both channels, as the bit of either does; return whether the reset has ended."""
+    registers.write(_AT["MM2S"] + _DMACR, _RESET)
+    return _clears(registers, _AT["MM2S"] + _DMACR, _RESET)
 
 
 def _clears(registers: Registers, offset: int, bit: int) -> bool:

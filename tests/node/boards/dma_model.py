@@ -26,7 +26,7 @@ class Channel:
         # IRQThreshold is 1 after a reset, and bit 1 is always 1.
         self.control, self.status = 1 << 16 | 1 << 1, HALTED
         self.address = self.length = 0
-        self.is_busy = False
+        self.is_busy = self.is_sent = False
 
     @property
     def interrupt(self) -> bool:
@@ -73,9 +73,9 @@ class Channel:
             # Idle is 0 before the first transfer.
             self.status &= ~(HALTED | IDLE)
         elif not value & RS:
-            self._halt()
+            self.halt()
 
-    def _halt(self) -> None:
+    def halt(self) -> None:
         self.control &= ~RS
         self.status = self.status & ~IDLE | HALTED
         self.is_busy = False
@@ -86,36 +86,69 @@ class Channel:
             return
         assert not self.is_busy, "a transfer is under way"
         assert self.address % self.dma.bus_bytes == 0, "without DRE, addresses are aligned"
-        self.length, self.is_busy = value, True
+        self.length, self.is_busy, self.is_sent = value, True, False
         self.status &= ~IDLE
+        if self.is_s2mm:
+            self.dma.streams.let_packet_come()
 
     def step(self) -> None:
         """Do what can be done now."""
-        if not self.is_busy:
+        if not self.is_busy or (self.is_s2mm and not self.dma.packets):
             return
-        if self.is_s2mm:
-            if not self.dma.packets:
+        if not self.is_sent:
+            packet = self.dma.packets.popleft() if self.is_s2mm else b""
+            size = len(packet) if self.is_s2mm else self.length
+            if problem := self._problem(size):
+                self.status |= problem | ERR
+                # "error_out <= error; map out to halt opposing channel": the VHDL of the core.
+                self.dma.mm2s.halt()
+                self.dma.s2mm.halt()
                 return
-            packet = self.dma.packets.popleft()
-            size, problem = len(packet), INT_ERR if len(packet) > self.length else 0
-        else:
-            packet, size, problem = b"", self.length, 0
-        place = self.dma.memory[self.address - self.dma.base :][:size]
+            place = self.dma.memory[self.address - self.dma.base :][:size]
+            if self.is_s2mm:
+                place[:] = packet
+                # The size of the buffer is replaced by that of the packet.
+                self.length = size
+            else:
+                self.is_sent = True
+                self.dma.streams.send(bytes(place))
+        if self.is_s2mm or self.dma.streams.has_sent:
+            self.is_busy = False
+            self.status |= IDLE | IOC
+
+    def _problem(self, size: int) -> int:
+        """Return the error bit of a transfer of `size` bytes."""
+        if self.is_s2mm and size > self.length:
+            return INT_ERR
         if not self.dma.base <= self.address <= self.dma.base + len(self.dma.memory) - size:
-            problem = problem or DEC_ERR
-        problem = problem or self.dma.fails.pop("S2MM" if self.is_s2mm else "MM2S", 0)
-        if problem:
-            self._halt()
-            self.status |= problem | ERR
-            return
-        if self.is_s2mm:
-            place[:] = packet
-            # The size of the buffer is replaced by that of the packet.
-            self.length = size
-        else:
-            self.dma.sink(bytes(place))
-        self.is_busy = False
-        self.status |= IDLE | IOC
+            return DEC_ERR
+        return self.dma.fails.pop("S2MM" if self.is_s2mm else "MM2S", 0)
+
+
+class Streams:
+    """The streams of a DMA, with a function in place of what is connected with them.
+
+    Parameters
+    ----------
+    take : callable
+        Takes a packet of MM2S.
+
+    Attributes
+    ----------
+    has_sent : bool
+        Whether the last packet has left.
+    """
+
+    has_sent = True
+
+    def __init__(self, take: Callable[[bytes], None]) -> None:
+        self.send = take
+
+    def let_packet_come(self) -> None:
+        """Let the next packet of S2MM come, for which there is a buffer now."""
+
+    def reset(self) -> None:
+        """Reset, with what is connected."""
 
 
 class AxiDma:
@@ -125,13 +158,13 @@ class AxiDma:
     ----------
     memory : memoryview
         The memory that the DMA sees, from the address `base` on.
-    sink : callable
-        Takes a packet of MM2S.
+    streams : Streams
+        Where packets of MM2S go.
 
     Attributes
     ----------
     packets : deque of bytes
-        What waits on the stream of S2MM. The DMA takes words before it runs, so a reset loses them.
+        What has come on the stream of S2MM. A reset loses it.
     fails : dict of str to int
         By channel: the error bit of its next transfer.
     resets : int
@@ -142,7 +175,7 @@ class AxiDma:
         self,
         memory: memoryview,
         base: int,
-        sink: Callable[[bytes], None],
+        streams: Streams,
         *,
         bus_bytes: int = 8,
         length_bits: int = 14,
@@ -150,7 +183,7 @@ class AxiDma:
         has_sg: bool = False,
         has_s2mm: bool = True,
     ) -> None:
-        self.memory, self.base, self.sink, self.bus_bytes = memory, base, sink, bus_bytes
+        self.memory, self.base, self.streams, self.bus_bytes = memory, base, streams, bus_bytes
         self.length_bits, self.address_bits, self.has_sg = length_bits, address_bits, has_sg
         self.has_s2mm, self.resets = has_s2mm, 0
         self.packets: deque[bytes] = deque()
@@ -163,6 +196,7 @@ class AxiDma:
         self.packets.clear()
         self.mm2s.reset()
         self.s2mm.reset()
+        self.streams.reset()
 
     @property
     def interrupt(self) -> bool:

@@ -19,6 +19,7 @@ from tests.node.boards.dma_model import (
     SG,
     SLV_ERR,
     AxiDma,
+    Streams,
 )
 
 BASE = 0x1_2000_0000
@@ -30,7 +31,7 @@ DMACR, DMASR, ADDRESS, ADDRESS_MSB, LENGTH = 0x00, 0x04, 0x18, 0x1C, 0x28
 def dma():
     memory = memoryview(bytearray(range(256)) * 256)
     sent = []
-    made = AxiDma(memory, BASE, sent.append)
+    made = AxiDma(memory, BASE, Streams(sent.append))
     made.sent = sent
     return made
 
@@ -106,16 +107,18 @@ def test_transfers(dma):
 
 @CHANNELS
 @pytest.mark.parametrize("bit", [SLV_ERR, DEC_ERR])
-def test_errors_halt_the_channel(dma, at, bit):
+def test_errors_halt_both_channels(dma, at, bit):
     """DMASlvErr: "This error condition causes the AXI DMA to halt gracefully. The DMACR.RS bit is
     set to 0, and when the engine has completely shut down, the DMASR.Halted bit is set to 1."
     """
     if bit == SLV_ERR:
         dma.fails = {"MM2S": bit, "S2MM": bit}
+    start(dma, 0x30 - at, 16)
     start(dma, at, 16, offset=0 if bit == SLV_ERR else 1 << 20)
     dma.packets.append(bytes(16))
-    dma.step()
+    (dma.s2mm if at else dma.mm2s).step()
     assert dma.read(at + DMASR) == HALTED | ERR | bit and not dma.read(at + DMACR) & RS
+    assert dma.read(0x30 - at + DMASR) == HALTED and not dma.read(0x30 - at + DMACR) & RS
     assert dma.interrupt and not dma.sent
     # Errors are read only, so a reset alone clears them.
     dma.write(at + DMASR, 0xFFFF_FFFF)
