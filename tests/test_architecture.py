@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Container, Iterator
 from functools import cache
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -224,6 +225,24 @@ def _imports(tree: ast.Module, whole: str, parts: Container[str]) -> Iterator[st
                 yield whole
             elif name.startswith(f"{prefix}."):
                 yield name.removeprefix(f"{prefix}.").partition(".")[0]
+
+
+def _needs(module: str, modules: dict[str, Path]) -> Iterator[str]:
+    """Yield the modules, and the packages around them, that a module imports when it is loaded."""
+    for node in _tree(modules[module]).body:
+        if isinstance(node, ast.ImportFrom):
+            for imported in (node.module or "", *(f"{node.module}.{a.name}" for a in node.names)):
+                parts = imported.split(".")
+                names = {".".join(parts[: end + 1]) for end in range(len(parts))}
+                yield from (n for n in names & set(modules) if not f"{module}.".startswith(f"{n}."))
+
+
+def test_each_module_can_be_imported_first() -> None:
+    paths = {
+        path: path.relative_to(PACKAGE.parent).with_suffix("") for path in PACKAGE.rglob("*.py")
+    }
+    modules = {".".join(p.parts).removesuffix(".__init__"): path for path, p in paths.items()}
+    TopologicalSorter({each: set(_needs(each, modules)) for each in modules}).prepare()
 
 
 def test_package_keeps_to_its_architecture() -> None:

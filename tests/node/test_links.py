@@ -8,10 +8,10 @@ import random
 import pytest
 from amaranth.hdl import Module, Signal
 
+from firm_hdl.ethernet.datagrams import datagram_layout
 from firm_hdl.node import Link
 from firm_hdl.node.bytestream import ByteStreamReader, write_frame
 from firm_hdl.node.links import AxiDmaLink, ByteLink, StreamLink, UartLink, UdpLink
-from firm_hdl.node.links.udp import datagram_layout
 from firm_hdl.node.messages import NodeMessage
 from firm_hdl.sim import Stalls
 from tests.depth import by_depth

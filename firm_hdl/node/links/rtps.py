@@ -8,11 +8,11 @@ from amaranth.hdl import Module, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
+from firm_hdl.ethernet.datagrams import DatagramSignature
 from firm_hdl.gateware import PacketFifo, PacketWidth
 from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware.streams import link_members, passes
-from firm_hdl.node.links.udp import DatagramSignature
 from firm_hdl.node.rtps.assembler import Assembler
 from firm_hdl.node.rtps.endpoints import own_of, ports_of_link
 from firm_hdl.node.rtps.engine import Engine

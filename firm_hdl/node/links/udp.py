@@ -9,7 +9,7 @@ from amaranth.hdl import Const, Module, Mux, Signal, Value
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.ethernet.datagrams import DatagramSignature, datagram_layout
+from firm_hdl.ethernet.datagrams import DatagramSignature
 from firm_hdl.gateware import PacketWidth
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.node.description import Link
@@ -18,7 +18,7 @@ from firm_hdl.node.gateware.header import HeaderInsert
 from firm_hdl.node.gateware.streams import link_members, passes
 from firm_hdl.node.links.receive import FrameReceiver
 
-__all__ = ["DatagramSignature", "UdpLink", "datagram_layout"]
+__all__ = ["UdpLink"]
 
 
 class UdpLink(wiring.Component):

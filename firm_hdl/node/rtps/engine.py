@@ -6,7 +6,7 @@ import hashlib
 from ipaddress import IPv4Address
 from typing import Any
 
-from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value, signed
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
@@ -48,6 +48,8 @@ _GRAPH = 2
 # missing; between greetings of a writer that has said nothing yet.
 _HEARTBEAT, _REPEAT, _GREETING = 2, 2, 5
 _MOST_TIMER = _MOST_TRIES = 15
+# Ticks for which a new message waits for a reader that acknowledges nothing: 3 seconds.
+_MOST_SILENT = 60
 # Seconds after which a peer without matched endpoints may give way to another one.
 _GRACE = 3
 # Seconds to wait for a datagram, whose time of arrival makes the GUID prefix new.
@@ -186,6 +188,11 @@ class Engine(wiring.Component):
                     # Those who wait for it come next.
                     m.d.sync += self._sweep.eq(self.first_row)
                     m.next = "IDLE"
+                with m.Elif(self.histories.asks):
+                    self._begin_scan(m, self.first_row)
+                    m.d.sync += self._freed.eq(MOST_SAMPLES)
+                    m.next = "ACKNOWLEDGED"
+            self._acknowledged(m)
             self._announcements(m)
             self._events(m)
             self._participants(m)
@@ -229,6 +236,7 @@ class Engine(wiring.Component):
         self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
+        self._freed = Signal(range(MOST_SAMPLES + 1))
         self._tick_due, self._tick_pass, self._second_due = Signal(), Signal(), Signal()
         self._statics = [int(IPv4Address(each)) for each in link.static_peers]
         self._most_static = _STATIC_PARTICIPANTS * len(self._statics)
@@ -273,6 +281,7 @@ class Engine(wiring.Component):
             assembly.sample_bytes.eq(event.last),
             self.histories.writer.eq(row.local - _FIXED_WRITERS),
             self.histories.number.eq(self._number),
+            self.histories.free.eq(self._freed),
         ]
 
     def _fixed_prefix(self) -> int:
@@ -332,9 +341,9 @@ class Engine(wiring.Component):
         ]
         self._padded = padded
 
-    def _begin_scan(self, m: Module) -> None:
+    def _begin_scan(self, m: Module, at: int = 0) -> None:
         m.d.sync += [
-            self._at.eq(0),
+            self._at.eq(at),
             self._has_word.eq(0),
             self._has_row.eq(0),
             self._has_free.eq(0),
@@ -709,7 +718,7 @@ class Engine(wiring.Component):
         event, announced = self.events.payload, self.announced
         is_writer = event.writer == raw(PUBLICATIONS_WRITER)
         self._is_same, self._local = Signal(), Signal.like(self._row.local)
-        self._depth = Signal(range(MOST_SAMPLES + 1))
+        self._depth = Signal(range(MOST_SAMPLES + 2))
         self._is_reliable, self._is_durable = Signal(), Signal()
         m.d.sync += self._is_same.eq(0)
         writers = [(_GRAPH + n, each, False) for n, each in enumerate(self.writers)]
@@ -786,10 +795,10 @@ class Engine(wiring.Component):
 
         with m.State("ACKNACK"):
             # 8.4.9.2. Base 0 is how Fast DDS greets a writer.
-            base = Mux(event.number == 0, 1, event.number)
+            with m.If(event.number > row.next):
+                m.d.sync += [row.next.eq(event.number), row.silent.eq(0)]
             m.d.sync += [
-                row.next.eq(base),
-                row.base.eq(base),
+                row.base.eq(event.number),
                 row.request.eq(Mux(event.number == 0, 0, event.bits)),
                 row.tries.eq(0),
                 row.ask.eq(row.ask | (~event.is_final & (event.bits == 0))),
@@ -824,6 +833,9 @@ class Engine(wiring.Component):
                 m.next = "STORE"
         with m.State("ROW_LOWER"):
             m.d.sync += self._lower.eq(Mux(row.first > self._gone, row.first, self._gone + 1))
+            with m.If(self._tick_pass & ~self._in_event):
+                silent = Mux(row.silent == _MOST_SILENT, row.silent, row.silent + 1)
+                m.d.sync += row.silent.eq(Mux(row.next <= self._last, silent, 0))
             m.next = "LISTENS"
             with m.If(row.writes):
                 m.next = "WRITES"
@@ -977,6 +989,26 @@ class Engine(wiring.Component):
 
     # Samples of our writers.
 
+    def _acknowledged(self, m: Module) -> None:
+        """Tell how many of a writer's oldest samples all readers have that are waited for."""
+        row, asked, freed = self._row, self.histories, self._freed
+        with m.State("ACKNOWLEDGED"):
+            is_waited = row.valid & row.writes & row.reliable & (row.silent != _MOST_SILENT)
+            is_of = row.local == asked.asker + _FIXED_WRITERS
+            ahead = Signal(signed(33))
+            m.d.comb += ahead.eq(row.next - asked.oldest)
+            self._scan(m, self._rows)
+            m.d.sync += [Value.cast(row).eq(self._rows.word), self._row_at.eq(self._at_word)]
+            with m.If(self._has_row & is_waited & is_of & (ahead < freed)):
+                m.d.sync += freed.eq(Mux(ahead < 0, 0, ahead))
+            with m.If(self._has_row & (self._row_at == self.rows - 1)):
+                m.next = "FREED"
+        with m.State("FREED"):
+            m.d.comb += asked.answers.eq(1)
+            m.next = "INTAKE"
+            with m.If(freed == 0):
+                m.next = "IDLE"
+
     def _sampling(self, m: Module) -> None:
         """Find sample `_number` of the row's writer, and order it, or a GAP in its place."""
         row, templates = self._row, self.templates
@@ -1016,6 +1048,9 @@ class Engine(wiring.Component):
             self._send_sample(m, Job.REPLY, Job.REPLY_FRAGMENT)
             with m.If(~is_for | (is_named & (asked != row.remote))):
                 m.d.sync += [self._from.eq(self._number), self._to.eq(self._number + 1)]
+                with m.If(row.next == self._number):
+                    # Nobody waits for it.
+                    m.d.sync += row.next.eq(row.next + 1)
                 self._send(m, Job.GAP)
 
     def _send_sample(self, m: Module, whole: Job, fragment: Job) -> None:

@@ -17,8 +17,7 @@ from firm_hdl.node.rtps.endpoints import Endpoint
 __all__ = ["MOST_SAMPLES", "History", "Part", "assembly_parts", "bytes_of", "parts_of"]
 
 MOST_SAMPLES = 16
-"""Samples that a writer keeps at most: a power of two. The depth of QoS is a request of at least as
-many, where readers are served from the history; what has room is kept."""
+"""Samples that a writer keeps at most: a power of two."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,12 +30,16 @@ class Part:
         Where it begins, and its size: a power of two, of which `base` is a multiple. Or 0: it has
         none.
     depth : int
-        Samples that a late reader gets, if it is not volatile.
+        As of QoS, and `MOST_SAMPLES` + 1 for what is deeper or has no end. So many samples a late
+        reader gets, if it is not volatile, and so many wait for readers to acknowledge them.
+    replays : bool
+        Whether there are such late readers.
     """
 
     base: int
     bytes: int
     depth: int = 1
+    replays: bool = False
 
 
 def bytes_of(parts: tuple[Part, ...]) -> int:
@@ -47,10 +50,11 @@ def bytes_of(parts: tuple[Part, ...]) -> int:
 def parts_of(writers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
     """Return the memory of each writer of a topic, as large as that of the topic."""
     sizes = [each.topic.store("out").memory_bytes for each in writers if each.topic]
-    depths = [each.data.qos.depth or MOST_SAMPLES for each in writers if each.topic]
+    endless = MOST_SAMPLES + 1
+    policies = [each.data.qos for each in writers if each.topic]
     return tuple(
-        replace(part, depth=min(depth, MOST_SAMPLES))
-        for part, depth in zip(_placed(sizes), depths, strict=True)
+        replace(part, depth=min(qos.depth or endless, endless), replays=bool(qos.durability))
+        for part, qos in zip(_placed(sizes), policies, strict=True)
     )
 
 

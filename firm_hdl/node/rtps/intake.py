@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Array, Cat, Const, Module, Signal, Value
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
@@ -24,8 +24,18 @@ def writer_layout(address_bits: int) -> data.StructLayout:
         The newest number, and the newest of those that the history no longer has.
     at, used : unsigned(address_bits), unsigned(address_bits + 1)
         Place of the next byte in the writer's memory, and bytes in use.
+    free : range(MOST_SAMPLES + 1)
+        How many of the oldest samples no reader has to acknowledge any more.
     """
-    return data.StructLayout({"last": 32, "gone": 32, "at": address_bits, "used": address_bits + 1})
+    return data.StructLayout(
+        {
+            "last": 32,
+            "gone": 32,
+            "at": address_bits,
+            "used": address_bits + 1,
+            "free": range(MOST_SAMPLES + 1),
+        }
+    )
 
 
 def sample_layout(address_bits: int) -> data.StructLayout:
@@ -41,9 +51,15 @@ def HistoriesSignature(parts: tuple[Part, ...]) -> wiring.Signature:
     waits : In(1)
         There is a message.
     takes : Out(1)
-        Take it; held until `ends`. No sample may be read meanwhile, as old ones give way.
+        Take it; held until `ends`, or until `free` is 0. No sample may be read meanwhile, as old
+        ones give way.
     ends : In(1)
         High for one cycle: it is in the history, or dropped.
+    asks, asker, oldest : In
+        How many samples of the writer `asker`, from the number `oldest` on, may give way? Asked
+        until `answers`.
+    answers, free : Out(1), Out(range(MOST_SAMPLES + 1))
+        So many. If it is 0, the message waits until it is taken again.
     writer : Out(range(len(parts)))
         Number of a writer.
     state : In(writer_layout(...))
@@ -59,6 +75,11 @@ def HistoriesSignature(parts: tuple[Part, ...]) -> wiring.Signature:
             "waits": In(1),
             "takes": Out(1),
             "ends": In(1),
+            "asks": In(1),
+            "asker": In(range(max(2, len(parts)))),
+            "oldest": In(32),
+            "answers": Out(1),
+            "free": Out(range(MOST_SAMPLES + 1)),
             "writer": Out(range(max(2, len(parts)))),
             "state": In(writer_layout(address)),
             "number": Out(32),
@@ -70,6 +91,9 @@ def HistoriesSignature(parts: tuple[Part, ...]) -> wiring.Signature:
 
 class Intake(wiring.Component):
     """Take messages into the memories of their writers; the oldest samples give way.
+
+    One that is among the last `depth` of its writer gives way only when all readers that are waited
+    for have acknowledged it; until then, the message waits.
 
     Parameters
     ----------
@@ -119,9 +143,9 @@ class Intake(wiring.Component):
         writer, tag = Signal(range(count)), Signal(32)
         length, fed = Signal(address + 1), Signal()
         state, place = Signal(asked.state.shape()), Signal(address)
-        limit, base = (
+        limit, base, depth, replays = (
             Array(getattr(each, name) for each in self.parts or (Part(base=0, bytes=0),))[writer]
-            for name in ("bytes", "base")
+            for name in ("bytes", "base", "depth", "replays")
         )
         mask, number = (limit - 1)[:address], Signal(32)
 
@@ -148,6 +172,10 @@ class Intake(wiring.Component):
             written.data.gone.eq(state.gone),
             written.data.at.eq(place & mask),
             written.data.used.eq(state.used + length),
+            # A late reader may need some that others have acknowledged.
+            written.data.free.eq(Mux(replays, 0, state.free)),
+            asked.asker.eq(writer),
+            asked.oldest.eq(state.gone + 1),
         ]
         with m.FSM():
             with m.State("INIT"):
@@ -181,18 +209,29 @@ class Intake(wiring.Component):
                     m.d.comb += self.unsent.eq(1)
                     m.next = "DISCARD"
             with m.State("ROOM"):
-                is_full = (state.last - state.gone)[ceil_log2(MOST_SAMPLES)]
+                kept = Signal(range(MOST_SAMPLES + 1))
                 m.d.comb += [
-                    samples.read_at.eq(place_of(writer, state.gone + 1)),
+                    kept.eq(state.last - state.gone),
+                    samples.read_at.eq(place_of(writer, asked.oldest)),
                     samples.reads.eq(1),
                 ]
                 m.next = "COPY"
-                with m.If(is_full | (state.used + length > limit)):
+                with m.If((kept == MOST_SAMPLES) | (state.used + length > limit)):
                     m.next = "FORGET"
+                    with m.If((state.free == 0) & (kept < depth)):
+                        m.next = "ASK"
+            with m.State("ASK"):
+                m.d.comb += asked.asks.eq(1)
+                with m.If(asked.answers):
+                    m.d.sync += state.free.eq(asked.free)
+                    m.next = "ROOM"
+                    with m.If(asked.free == 0):
+                        m.next = "IDLE"
             with m.State("FORGET"):
                 m.d.sync += [
-                    state.gone.eq(state.gone + 1),
+                    state.gone.eq(asked.oldest),
                     state.used.eq(state.used - asked.sample.bytes),
+                    state.free.eq(Mux(state.free == 0, 0, state.free - 1)),
                 ]
                 m.next = "ROOM"
             with m.State("COPY"):

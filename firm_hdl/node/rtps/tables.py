@@ -56,6 +56,8 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
         Ticks to the next one that nothing else causes.
     tries : unsigned(4)
         How often one was sent since the last progress.
+    silent : unsigned(6)
+        Of a reader: ticks for which it has lacked a sample, and acknowledged none.
     user : structure of `address` and `port`
         Where it wants to be sent to; port 0 means where its participant says.
     """
@@ -77,6 +79,7 @@ def row_layout(peers: int, endpoints: int) -> data.StructLayout:
             "ask": 1,
             "timer": 4,
             "tries": 4,
+            "silent": 6,
             "user": locator,
         }
     )

@@ -8,9 +8,9 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
+from firm_hdl.ethernet.datagrams import DatagramSignature, datagram_layout
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.node.gateware.streams import passes
-from firm_hdl.node.links.udp import DatagramSignature, datagram_layout
 from firm_hdl.node.rtps.templates import Op, Templates, fields_layout, op_layout
 
 __all__ = ["Transmitter", "order_layout"]

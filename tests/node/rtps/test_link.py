@@ -34,16 +34,24 @@ MESSAGES = [b"\0\1\0\0" + bytes(n % 251 for n in range(size)) for size in (4, 7,
 FRAGMENT_BYTES, WANTED = 256, NumberSet(2, (2,))
 
 
-class Once:
-    """Lose the second sample of a topic, and the first fragment, once in each direction."""
+class Losses:
+    """Lose the second sample of a topic, and the first fragment, once in each direction.
 
-    def __init__(self):
-        self.lost = set()
+    While `silent` is not empty, lose what participants with these prefixes acknowledge of the
+    link's topic.
+    """
+
+    def __init__(self, once):
+        self.once, self.lost, self.silent = once, set(), ()
 
     def __call__(self, is_to_board, datagram):
         prefix = datagram[24:36] if datagram[20] == InfoDestination.KIND else bytes(12)
         for each in message.read(datagram, prefix).received:
-            what = each.submessage
+            what, is_silent = each.submessage, each.source in self.silent
+            if is_silent and isinstance(what, AckNack) and what.writer == user_writer(2):
+                return True
+            if not self.once:
+                continue
             is_second = (
                 isinstance(what, Data) and what.sequence_number == 2 and not is_builtin(what.writer)
             )
@@ -57,9 +65,8 @@ class Once:
 
 @pytest.mark.parametrize("has_losses", by_depth([False], [False, True]))
 def test_discovery_and_samples_both_ways(has_losses):
-    core, loses = core_of(1, fragment_bytes=FRAGMENT_BYTES), Once()
-    description = description_of(datagram_bytes=448)
-    wires = Wires(description, core, loses=loses if has_losses else lambda *_: False)
+    core, loses = core_of(1, fragment_bytes=FRAGMENT_BYTES), Losses(once=has_losses)
+    wires = Wires(description_of(datagram_bytes=448), core, loses=loses)
     reader = core.add_reader("rt/said", STRING, Qos(), b"", 0.0)
     nodes = core.add_reader(graph.TOPIC, graph.TYPE, graph.QOS, b"", 0.0)
     writer = core.add_writer("rt/heard", STRING, Qos(depth=0), b"", 0.0)
@@ -113,6 +120,15 @@ def test_discovery_and_samples_both_ways(has_losses):
         yield from wires.until(lambda: said(NackFrag, sequence_number=4, missing=WANTED))
         wires.put(message.write(core.prefix, [second]))
         yield from wires.until(lambda: len(wires.received) == 4)
+        # The memory has room for one of these. The next one waits until it is acknowledged.
+        loses.silent = (core.prefix,)
+        wires.to_send.extend([(2, 0, MESSAGES[2])] * 2)
+        yield from wires.until(lambda: len(came(reader.guid)) == 4)
+        yield from wires.pause(0.02)
+        assert len(wires.taken_at) == 4
+        ends = {"reader": reader.guid.entity, "writer": user_writer(2), "count": 99}
+        wires.put(message.write(core.prefix, [AckNack(**ends, missing=NumberSet(5))]))
+        yield from wires.until(lambda: len(wires.taken_at) == 5)
 
     wires.run(script())
     (info,) = map(graph.GraphInfo.decode, came(nodes.guid))
@@ -120,7 +136,7 @@ def test_discovery_and_samples_both_ways(has_losses):
     wanted = [*MESSAGES, MESSAGES[2]]
     assert wires.received == [(1, 1 + n, each) for n, each in enumerate(wanted)]
     whole, padded = [], came(reader.guid)
-    for each in MESSAGES:
+    for each in (*MESSAGES, MESSAGES[2]):
         # A sample in fragments has its size, as a whole one has not.
         whole.append(each + bytes(-len(each) % 4) if len(each) < FRAGMENT_BYTES else each)
     assert padded == whole
@@ -132,3 +148,32 @@ def test_discovery_and_samples_both_ways(has_losses):
         assert min(wires.waits) < 150
         begins = min(each for each in wires.sent_at if each > wires.taken_at[0])
         assert begins - wires.taken_at[0] < 60
+
+
+@pytest.mark.thorough
+def test_a_silent_reader_holds_a_writer_for_three_seconds():
+    cores, loses = (core_of(1), core_of(2)), Losses(once=False)
+    description = description_of(clock_hz=6_000.0, said=", history: keep_all")
+    wires = Wires(description, *cores, loses=loses)
+    for each in cores:
+        each.add_reader("rt/said", STRING, Qos(), b"", 0.0)
+
+    def came(core):
+        return sum(isinstance(each, Arrived) for each in wires.events[core])
+
+    def script():
+        yield from wires.pause(3.0)
+        loses.silent = tuple(each.prefix for each in cores)
+        wires.to_send.extend([(2, 0, MESSAGES[2])] * 2)
+        yield from wires.until(lambda: came(cores[1]) == 1)
+        yield from wires.pause(2.0)
+        assert len(wires.taken_at) == 1
+        # The other one answers again.
+        loses.silent = (cores[1].prefix,)
+        yield from wires.pause(0.5)
+        assert len(wires.taken_at) == 1
+        yield from wires.until(lambda: came(cores[0]) == 2, 2.0)
+        wires.to_send.extend([(2, 0, MESSAGES[2])] * 9)
+        yield from wires.until(lambda: came(cores[0]) == 11, 4.0)
+
+    wires.run(script())

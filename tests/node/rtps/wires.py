@@ -35,12 +35,14 @@ publish:
 """
 
 
-def description_of(heard: str = "", said: str = "", **link: object) -> Description:
+def description_of(
+    heard: str = "", said: str = "", clock_hz: float = CLOCK_HZ, **link: object
+) -> Description:
     """Return a node with a subscription, and a publication; with further options of both."""
     text = TEXT.format(address=BOARD, heard=heard, said=said)
     description = read_description_text(text)
     link = {"memory_bytes": 4096, "peers": 2, "matches": 6, **link}
-    return replace(description, clock_hz=CLOCK_HZ, link=replace(description.link, **link))
+    return replace(description, clock_hz=clock_hz, link=replace(description.link, **link))
 
 
 def core_of(number: int, **options: object) -> Core:
@@ -117,6 +119,12 @@ class Wires:
             assert self.now < end, "it takes too long"
             yield
 
+    def pause(self, seconds: float):
+        """Wait in a script."""
+        end = self.now + seconds
+        while self.now < end:
+            yield
+
     async def _bench(self, ctx, script) -> None:
         link = self.link
         rx, tx = link.datagrams_in, link.datagrams_out
@@ -129,7 +137,7 @@ class Wires:
         coming, at, packet_at, cycles, came_at = None, 0, 0, 0, 0
         while True:
             if cycles % 16 == 0:
-                self.now = cycles / CLOCK_HZ
+                self.now = cycles / link.description.clock_hz
                 self._exchange()
                 for name in link.counters.shape().members:
                     self.counters[name] = ctx.get(link.counters[name])
