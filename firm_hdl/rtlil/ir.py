@@ -6,9 +6,10 @@ least significant chunk first.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from functools import wraps
+from typing import Any, TypeAlias, TypeVar
 
 __all__ = [
     "Assign",
@@ -29,6 +30,7 @@ __all__ = [
     "bits_of",
     "cut",
     "join",
+    "once_per_module",
     "spec_width",
 ]
 
@@ -63,7 +65,7 @@ Value: TypeAlias = int | float | str | Bits
 
 def spec_width(spec: Spec) -> int:
     """Count the bits of a signal specification."""
-    return sum(chunk.width for chunk in spec)
+    return spec[0].width if len(spec) == 1 else sum(chunk.width for chunk in spec)
 
 
 def bits_of(spec: Spec) -> str | None:
@@ -78,6 +80,8 @@ def bits_of(spec: Spec) -> str | None:
 
 def cut(spec: Spec, low: int, width: int) -> Spec:
     """Take `width` bits of a value from bit `low` up."""
+    if low == 0 and len(spec) == 1 and 0 < spec[0].width <= width:
+        return spec
     result: list[Chunk] = []
     position = 0
     for chunk in spec:
@@ -184,7 +188,10 @@ class Process:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Module:
-    """One module. Names have no leading backslash; generated names keep their ``$``."""
+    """One module. Names have no leading backslash; generated names keep their ``$``.
+
+    `memo` has what several writers need and is computed once, see :func:`once_per_module`.
+    """
 
     name: str
     attributes: Mapping[str, Value]
@@ -192,6 +199,23 @@ class Module:
     memories: Mapping[str, Memory]
     items: tuple[Cell | Process, ...]
     connections: tuple[tuple[Spec, Spec], ...]
+    memo: dict[object, Any] = field(init=False, default_factory=dict, compare=False, repr=False)
+
+
+_Found = TypeVar("_Found")
+
+
+def once_per_module(function: Callable[[Module], _Found]) -> Callable[[Module], _Found]:
+    """Compute a function of a module once, as long as the module lives."""
+
+    @wraps(function)
+    def kept(module: Module) -> _Found:
+        if function not in module.memo:
+            module.memo[function] = function(module)
+        found: _Found = module.memo[function]
+        return found
+
+    return kept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

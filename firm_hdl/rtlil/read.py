@@ -38,7 +38,9 @@ _CELLS = frozenset(
     "$shl $shr $sshr $and $or $xor $eq $ne $lt $le $gt $ge $mux $shift $dff $adff $tribuf "
     "$memrd_v2 $memwr_v2 $meminit_v2 $check $print $anyconst $anyseq $initstate".split()
 )
-_TOKEN = re.compile(r"\s*(?:(\{|\})|\[(\d+)(?::(\d+))?\]|(\d+)'([01xz-]*)|[\\]([^\s]+)|(\$[^\s]+))")
+_TOKEN = re.compile(
+    r"\s*(?:(\{|\})|(\d+)'([01xz-]*)|(?:\\([^\s]+)|(\$[^\s]+))(?:\s*\[(\d+)(?::(\d+))?\])?)"
+)
 _WIRE = re.compile(r"wire width (\d+)(?: (input|output|inout) (\d+) *)?( ?signed)? ([\\$]\S+)$")
 _MEMORY = re.compile(r"memory width (\d+) size (\d+) ([\\$]\S+)$")
 _CELL = re.compile(r"cell ([\\$]\S+) ([\\$]\S+)$")
@@ -72,8 +74,11 @@ def parse(text: str) -> Design:
 class _Parser:
     def __init__(self, text: str) -> None:
         # Not `splitlines`: it would also split at other characters, which a string may contain.
-        self._lines = text.split("\n")
+        lines = enumerate(map(str.strip, text.split("\n")), 1)
+        self._lines: Iterator[tuple[int, str]] = (each for each in lines if each[1])
         self._number = 0
+        # By line: the name and value of an attribute or parameter, since few differ.
+        self._values: dict[str, tuple[str, Value]] = {}
         self._wires: dict[str, Wire] = {}
         self._specs: dict[str, Spec] = {}
 
@@ -81,12 +86,8 @@ class _Parser:
         raise ValueError(f"RTLIL line {self._number}: {message}")
 
     def _next(self) -> str | None:
-        while self._number < len(self._lines):
-            line = self._lines[self._number].strip()
-            self._number += 1
-            if line:
-                return line
-        return None
+        self._number, line = next(self._lines, (self._number, None))
+        return line
 
     def _inner(self) -> Iterator[str]:
         """Yield lines up to the `end` of the block that was just opened."""
@@ -253,11 +254,9 @@ class _Parser:
             if match is None:
                 self._fail(f"malformed signal {text!r}")
             position = match.end()
-            brace, high, low, size, bits, name, generated = match.groups()
+            brace, size, bits, name, generated, high, low = match.groups()
             if brace:
                 depth += 1 if brace == "{" else -1
-            elif high is not None:
-                chunks[-1:] = [self._cut(chunks[-1] if chunks else None, high, low)]
             elif bits is not None:
                 missing = int(size) - len(bits)
                 if missing < 0 or (missing and not bits):
@@ -270,21 +269,26 @@ class _Parser:
                 wire = self._wires.get(name or generated)
                 if wire is None:
                     self._fail(f"no wire {name or generated!r}")
-                chunks.append(Slice(wire.name, 0, wire.width, True))
+                chunks.append(self._cut(wire, high, low))
         if depth or (len(chunks) != 1 and not text.startswith("{") and "'" not in text):
             self._fail(f"malformed signal {text!r}")
         return tuple(chunk for chunk in reversed(chunks) if chunk.width)
 
-    def _cut(self, chunk: Chunk | None, high: str, low: str | None) -> Slice:
-        top, bottom = int(high), int(high if low is None else low)
-        if not isinstance(chunk, Slice) or not chunk.bare or not bottom <= top < chunk.width:
+    def _cut(self, wire: Wire, high: str | None, low: str | None) -> Slice:
+        if high is None:
+            return Slice(wire.name, 0, wire.width, True)
+        top, bottom = int(high), int(low or high)
+        if not bottom <= top < wire.width:
             self._fail(f"slice [{top}:{bottom}] is out of range")
-        return Slice(chunk.wire, bottom, top - bottom + 1)
+        return Slice(wire.name, bottom, top - bottom + 1)
 
     def _value(self, line: str, into: dict[str, Value]) -> None:
-        match = _VALUE.match(line) or self._fail(f"malformed {line!r}")
-        _keyword, flag, name, text = match.groups()
-        into[name] = self._constant(text, flag)
+        found = self._values.get(line)
+        if found is None:
+            match = _VALUE.match(line) or self._fail(f"malformed {line!r}")
+            _keyword, flag, name, text = match.groups()
+            found = self._values[line] = name, self._constant(text, flag)
+        into[found[0]] = found[1]
 
     def _constant(self, text: str, flag: str | None) -> Value:
         if text.startswith('"') and text.endswith('"') and len(text) > 1:

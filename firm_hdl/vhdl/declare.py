@@ -22,6 +22,7 @@ from firm_hdl.rtlil.ir import (
     Value,
     Wire,
     cut,
+    once_per_module,
     spec_width,
 )
 from firm_hdl.vhdl.expr import Declared
@@ -29,7 +30,7 @@ from firm_hdl.vhdl.graph import Graph, attributes_of, only, uses_with_registers,
 from firm_hdl.vhdl.instance import component_names
 from firm_hdl.vhdl.names import AMS, Scope, is_identifier, legal
 from firm_hdl.vhdl.text import bit_literal, literal
-from firm_hdl.vhdl.uses import INLINE, Use, output, statement_uses, uses_of
+from firm_hdl.vhdl.uses import INLINE, Use, output
 
 __all__ = [
     "Names",
@@ -257,6 +258,7 @@ def _ports(
     return ports, signals
 
 
+@once_per_module
 def part_names(module: Module) -> dict[str, str]:
     """Name generated wires after the named signal to which they are connected as a part.
 
@@ -279,6 +281,7 @@ def _field_of(name: str) -> str:
     return name[len(base) + 1 :] if name[len(base) :].startswith(".") and "[" not in name else ""
 
 
+@once_per_module
 def _parts(module: Module) -> dict[str, tuple[str, int]]:
     """Return the generated wires that are a part of a named signal: the signal and lowest bit."""
     parts: dict[str, tuple[str, int]] = {}
@@ -310,6 +313,7 @@ def _parts(module: Module) -> dict[str, tuple[str, int]]:
     return parts
 
 
+@once_per_module
 def layouts(module: Module) -> dict[str, str]:
     """Return the bits of the fields of each signal with a structure, and of its parts, as text."""
     fields: dict[str, list[tuple[int, int, str]]] = defaultdict(list)
@@ -395,13 +399,12 @@ def _part_of_results(graph: Graph, named: Mapping[str, str]) -> dict[str, str]:
                 if isinstance(chunk, Slice) and chunk.wire.startswith("$"):
                     readers[chunk.wire].add(by)
 
-    for cell in graph.cells:
+    for cell, uses in zip(graph.cells, graph.cell_uses, strict=True):
         by = output(cell) if cell.kind in INLINE or cell.kind in ("$dff", "$adff") else ""
-        read(by, uses_of(cell, graph.width))
-    for wire, process in graph.next_state.items():
-        read(wire, statement_uses(process.body))
-    for process in graph.processes:
-        read(graph.target(process), statement_uses(process.body))
+        read(by, uses)
+    registers = {graph.target(process): wire for wire, process in graph.next_state.items()}
+    for wire, uses in graph.process_uses.items():
+        read(registers.get(wire, wire), uses)
     for target, value in (*graph.drives, *graph.aliases):
         read(next(iter(wires_of([target]))), [Use(value, True)])
 

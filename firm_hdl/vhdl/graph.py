@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import TypeAlias
 
 from firm_hdl.names.attributes import PURPOSE, REMARK
@@ -65,6 +66,10 @@ class Graph:
         Flip-flops by the wire that they drive.
     next_state : mapping of str to Process
         By register wire: the process that computes its next value and nothing else.
+    cell_uses : tuple of tuples of Use
+        What each of the cells reads.
+    process_uses : mapping of str to tuple of Use
+        What a process reads, by the wire that it drives.
     folded : mapping of str to Cell
         Generated wires without a signal: their expression is written where they are read.
     """
@@ -81,6 +86,8 @@ class Graph:
     name_of: Mapping[str, str] = field(default_factory=dict)
     register_of: Mapping[str, Cell] = field(default_factory=dict)
     next_state: Mapping[str, Process] = field(default_factory=dict)
+    cell_uses: tuple[tuple[Use, ...], ...] = ()
+    process_uses: Mapping[str, tuple[Use, ...]] = field(default_factory=dict)
     folded: Mapping[str, Cell] = field(default_factory=dict)
 
     def target(self, process: Process) -> str:
@@ -110,10 +117,7 @@ class Graph:
 
     def uses(self) -> Iterator[Use]:
         """Yield the values that cells and processes read."""
-        for cell in self.cells:
-            yield from uses_of(cell, self.width)
-        for process in self.processes:
-            yield from statement_uses(process.body)
+        return chain(*self.cell_uses, *self.process_uses.values())
 
     def connected(self) -> Iterator[Spec]:
         """Yield the values that connections read."""
@@ -172,16 +176,30 @@ def graph_of(
         Whether the language can write the operator in an expression, given the bits of its result
         that are read.
     """
+    graph: Graph | None = module.memo.get(graph_of)
+    if graph is None or graph.modules is not modules:
+        graph = module.memo[graph_of] = _unfolded(module, modules)
+    return _fold(graph, is_foldable)
+
+
+def _unfolded(module: Module, modules: Mapping[str, Module]) -> Graph:
+    """Build what is the same in all languages."""
+    processes = {
+        wire: item
+        for item in module.items
+        if isinstance(item, Process) and (wire := target_of(item)) is not None
+    }
     graph = Graph(
         module=module,
         modules=modules,
         cells=tuple(i for i in module.items if isinstance(i, Cell) and _has_bits(i)),
-        processes=tuple(i for i in module.items if isinstance(i, Process) and target_of(i)),
+        processes=tuple(processes.values()),
+        process_uses={wire: tuple(statement_uses(i.body)) for wire, i in processes.items()},
         width={name: wire.width for name, wire in module.wires.items()},
     )
     for run_pass in PASSES:
         graph = run_pass(graph)
-    return _fold(graph, is_foldable)
+    return graph
 
 
 def _drop_division_guards(graph: Graph) -> Graph:
@@ -229,7 +247,10 @@ def _drop_division_guards(graph: Graph) -> Graph:
 def _sort_connections(graph: Graph) -> Graph:
     """Separate connections that drive a wire from those that only give a value another name."""
     module = graph.module
-    read = {chunk.wire for use in graph.uses() for chunk in use.spec if isinstance(chunk, Slice)}
+    uses = chain(
+        *(uses_of(cell, graph.width) for cell in graph.cells), *graph.process_uses.values()
+    )
+    read = {chunk.wire for use in uses for chunk in use.spec if isinstance(chunk, Slice)}
     read |= {c.wire for _, value in module.connections for c in value if isinstance(c, Slice)}
     drives: list[Connection] = []
     aliases: list[Connection] = []
@@ -283,9 +304,8 @@ def _narrow(graph: Graph) -> Graph:
         if cell.kind not in INLINE or output(cell) not in drivers:
             for use in uses_of(cell, width):
                 demand(use.spec)
-    for process in graph.processes:
-        for use in statement_uses(process.body):
-            demand(use.spec)
+    for use in chain(*graph.process_uses.values()):
+        demand(use.spec)
     for value in graph.connected():
         demand(value)
     while pending:
@@ -293,12 +313,14 @@ def _narrow(graph: Graph) -> Graph:
         width[name] = needed[name]
         for use in uses_of(drivers[name], width):
             demand(use.spec)
-    kept = (
+    kept = tuple(
         cell
         for cell in graph.cells
         if cell.kind not in INLINE or output(cell) not in drivers or needed[output(cell)]
     )
-    return replace(graph, cells=tuple(kept), width=width)
+    # From here on, neither cells nor widths change.
+    uses = tuple(tuple(uses_of(cell, width)) for cell in kept)
+    return replace(graph, cells=kept, width=width, cell_uses=uses)
 
 
 def _adopt_names(graph: Graph) -> Graph:
@@ -387,15 +409,12 @@ def _pair_registers(graph: Graph) -> Graph:
 
 def uses_with_registers(graph: Graph) -> Iterator[Use]:
     """Yield all values that are read; for a register, the values that its process reads."""
-    for cell in graph.cells:
-        process = graph.next_state.get(output(cell)) if cell.kind in ("$dff", "$adff") else None
-        for use in uses_of(cell, graph.width):
-            if process is None or use.spec != cell.ports["D"]:
-                yield use
-        if process is not None:
-            yield from statement_uses(process.body)
-    for process in graph.processes:
-        yield from statement_uses(process.body)
+    for cell, uses in zip(graph.cells, graph.cell_uses, strict=True):
+        if cell.kind in ("$dff", "$adff") and output(cell) in graph.next_state:
+            yield from (use for use in uses if use.spec != cell.ports["D"])
+        else:
+            yield from uses
+    yield from chain(*graph.process_uses.values())
     for value in graph.connected():
         yield Use(value, True)
 

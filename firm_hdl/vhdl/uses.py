@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from firm_hdl.rtlil.ir import (
     Assign,
@@ -54,10 +54,12 @@ def int_parameter(cell: Cell, name: str) -> int:
     return value
 
 
+_OUTPUT = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA"}
+
+
 def output(cell: Cell) -> str:
     """Name the wire that an operator, flip-flop or memory port drives."""
-    port = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA"}.get(cell.kind, "Y")
-    chunk = cell.ports[port][0]
+    chunk = cell.ports[_OUTPUT.get(cell.kind, "Y")][0]
     assert isinstance(chunk, Slice)
     return chunk.wire
 
@@ -81,8 +83,7 @@ def enable_runs(spec: Spec) -> list[tuple[Chunk, int, int]]:
     return runs
 
 
-@dataclass(frozen=True, slots=True)
-class Use:
+class Use(NamedTuple):
     """One use of a specification; `inline` if an expression may replace the specification."""
 
     spec: Spec
@@ -133,13 +134,13 @@ def statement_uses(body: tuple[Statement, ...]) -> Iterator[Use]:
 
 def _selector_uses(switch: Switch) -> Iterator[Use]:
     """Yield the uses of a selector; a bit may be an expression if it is tested only once."""
-    position = spec_width(switch.selector)
+    width = position = spec_width(switch.selector)
+    patterns = [pattern for case in switch.cases for pattern in case.patterns]
     for chunk in reversed(switch.selector):
         low = position - chunk.width
+        # The first digit of a pattern is that of the highest bit.
         readers = sum(
-            any(mark != "-" for mark in pattern[len(pattern) - position : len(pattern) - low])
-            for case in switch.cases
-            for pattern in case.patterns
+            bool(pattern[width - position : width - low].strip("-")) for pattern in patterns
         )
         both_values = len(switch.selector) == 1 and readers == 2 and position == 1
         yield Use((chunk,), chunk.width == 1 and (readers <= 1 or both_values))
