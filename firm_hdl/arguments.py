@@ -17,7 +17,6 @@ __all__ = [
     "add_bus_bytes",
     "add_depends",
     "add_engine",
-    "add_ip",
     "add_jobs",
     "add_json",
     "add_options",
@@ -177,13 +176,6 @@ def add_jobs(command: argparse._ActionsContainer) -> None:
     """Add ``--jobs``."""
     command.add_argument(
         "--jobs", type=positive, metavar="N", help="processes; default: one per processor"
-    )
-
-
-def add_ip(command: argparse._ActionsContainer) -> None:
-    """Add ``--ip``."""
-    command.add_argument(
-        "--ip", choices=["vivado"], help="also write IP for this tool: a folder ip, a repository"
     )
 
 

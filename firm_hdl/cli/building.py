@@ -6,9 +6,9 @@ import argparse
 import os
 from typing import TYPE_CHECKING
 
-from firm_hdl.arguments import TYPE_HELP, add_ip, add_jobs, add_json, add_options
+from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
-from firm_hdl.export.options import EXTRAS, LEAF_PORTS, PORTS, Extra, Options
+from firm_hdl.export.options import EXTRAS, IPS, LEAF_PORTS, PORTS, Extra, Options
 from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
@@ -17,7 +17,17 @@ if TYPE_CHECKING:
     from firm_hdl.model import Message
     from firm_hdl.plan import Plan
 
-__all__ = ["add_build", "add_info", "add_plan", "tell"]
+__all__ = ["add_build", "add_info", "add_ip", "add_plan", "tell"]
+
+
+def add_ip(command: argparse._ActionsContainer) -> None:
+    """Add ``--ip``."""
+    command.add_argument(
+        "--ip",
+        choices=IPS,
+        help="also write IP for this tool: vivado and quartus, a folder ip with a component for "
+        "each design; litex, a Python file with its modules",
+    )
 
 
 class _Gone(argparse.Action):

@@ -11,8 +11,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from firm_hdl.arguments import add_engine, add_ip, add_json, add_path, number_between, seconds
-from firm_hdl.cli.building import tell
+from firm_hdl.arguments import add_engine, add_json, add_path, number_between, seconds
+from firm_hdl.cli.building import add_ip, tell
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 from firm_hdl.terminal import stage
@@ -265,7 +265,7 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         options: dict[str, Any] = {
             "stimuli": _stimuli,
             "datasheet": args.datasheet,
-            "ip": args.ip is not None,
+            "ip": args.ip,
         }
         built = build_node(description, args.out, force=args.force, **options)
         tell(built, end="")

@@ -26,6 +26,7 @@ class AxisPort:
     direction : "in" or "out"
     width : int
     inner : str
+        Empty of an input that the design has not.
     inner_width : int
         At most `width`. An input ignores the bits above, and an output has 0 there.
     """
@@ -93,7 +94,7 @@ def axis_module(name: str, inner: str, ports: Sequence[AxisPort], header: str) -
         high = f" [{port.width - 1}:0]" if port.width > 1 else ""
         lines.append(f"  {port.direction}put wire{high} {port.name}")
     joined, nets = [], []
-    for port in ports:
+    for port in (port for port in ports if port.inner):
         actual = port.name
         if port.width > port.inner_width:
             top = port.inner_width - 1

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.export import readme, registers, systemverilog, verilog, vhdl, vivado_ip
+from firm_hdl.export import ip, readme, registers, systemverilog, verilog, vhdl
 from firm_hdl.export.backend import BuildError, Converters
 from firm_hdl.export.folder import build_folder, check_folder
 from firm_hdl.export.manifest import (
@@ -255,7 +255,7 @@ def _files(converters: Converters, figures: Timing) -> tuple[dict[str, str], dic
         outputs["registers"] = registers.write(converters)
     if options.ip:
         texts = {name: text for each in outputs.values() for name, text in each.files.items()}
-        outputs["IP"] = vivado_ip.write(converters, texts)
+        outputs["IP"] = ip.write(converters, texts)
     if "systemverilog" in extras:
         outputs["SystemVerilog"] = systemverilog.write(converters)
     sections = {

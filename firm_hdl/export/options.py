@@ -16,7 +16,7 @@ PORTS: tuple[Ports, ...] = get_args(Ports)
 LeafPorts: TypeAlias = Literal["plain", "axis"]
 LEAF_PORTS: tuple[LeafPorts, ...] = get_args(LeafPorts)
 
-Ip: TypeAlias = Literal["vivado"]
+Ip: TypeAlias = Literal["vivado", "quartus", "litex"]
 IPS: tuple[Ip, ...] = get_args(Ip)
 
 Extra: TypeAlias = Literal["systemverilog", "tools", "documents"]
@@ -47,7 +47,7 @@ class Options:
         Also write converters with registers on AXI4-Lite.
     leaf_ports : "plain" or "axis"
         "axis": also write modules whose leaves are AXI4-Stream.
-    ip : "vivado" or None
+    ip : "vivado", "quartus", "litex" or None
         Also write IP for a tool, with these leaves.
     """
 

@@ -26,6 +26,7 @@ from firm_hdl.export.design import (
     write_design,
 )
 from firm_hdl.export.folder import read_manifest
+from firm_hdl.export.ip import Ip, ip_files
 from firm_hdl.export.manifest import digest
 from firm_hdl.export.message_ports import (
     RecordPort,
@@ -34,8 +35,8 @@ from firm_hdl.export.message_ports import (
     record_files,
     struct_files,
 )
+from firm_hdl.export.options import Ip as Tool
 from firm_hdl.export.verilog.backend import waivers
-from firm_hdl.export.vivado_ip import Ip, ip_files
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.accelerator import conflicts_reported
@@ -85,7 +86,7 @@ def build_node(
     force: bool = False,
     stimuli: Stimuli | None = None,
     datasheet: bool = False,
-    ip: bool = False,
+    ip: Tool | None = None,
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -100,8 +101,8 @@ def build_node(
         only.
     datasheet : bool
         Write the datasheet, too. It has the figures of bitstreams that are in the folder.
-    ip : bool
-        Write an IP of Vivado, too; of a node whose link is AXI4-Stream.
+    ip : Tool or None
+        Write an IP for this tool, too; of a node whose link is AXI4-Stream.
 
     Raises
     ------
@@ -110,8 +111,11 @@ def build_node(
         name, or the folder cannot be written.
     """
     kind = description.link.kind
-    if ip and kind not in ("stream", "axi_dma"):
-        message = f"IP needs the link 'stream' or 'axi_dma', which are AXI4-Stream, not '{kind}'"
+    # AXI DMA is AMD's.
+    kinds = ("stream", "axi_dma") if ip == "vivado" else ("stream",)
+    if ip and kind not in kinds:
+        needed = " or ".join(f"'{each}'" for each in kinds)
+        message = f"IP needs the link {needed}, not '{kind}'"
         raise DefinitionError([Diagnostic(message=message, span=description.link_span)])
     name = design_name(description)
     folder = design_folder(out, name)
@@ -146,7 +150,7 @@ def build_node(
                 "frames_sha256": None if script is None else digest(script.text),
                 "accelerator_files": accelerator,
                 **({} if placed is None else {"datasheet": placed}),
-                **({"ip": "vivado"} if ip else {}),
+                **({"ip": ip} if ip else {}),
             },
             circuit,
         ),
@@ -176,7 +180,7 @@ def _files(
     own: AcceleratorFiles,
     *,
     placed: Mapping[str, Any] | None,
-    ip: bool,
+    ip: Tool | None,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -250,7 +254,7 @@ def _files(
         **benches,
         **documents,
         **(
-            ip_files(_ip(description, name, ports, messages, {**own.texts, **verilog}))
+            ip_files(ip, name, [_ip(description, name, ports, messages, {**own.texts, **verilog})])
             if ip
             else {}
         ),

@@ -1,19 +1,29 @@
-"""IP of Vivado: a Verilog module with a ``component.xml``, and a script that packages the same.
+"""IP of Vivado and Quartus, and modules of LiteX: Verilog, and what a tool asks about its ports.
 
-Facts are those of UG1118 (2024.1). "Top-Level HDL Requirements": "The IP packager supports Verilog
-and VHDL as a top-level", so neither VHDL-2008 nor SystemVerilog. "Inferring AXI Signals": "the port
-name consists of an interface name followed by the AXI signal name". No version of Vivado has read
-what is written here.
+Vivado: ``component.xml``, and a script that packages the same. Facts are those of UG1118 (2024.1).
+"Top-Level HDL Requirements": "The IP packager supports Verilog and VHDL as a top-level", so neither
+VHDL-2008 nor SystemVerilog. "Inferring AXI Signals": "the port name consists of an interface name
+followed by the AXI signal name".
+
+Quartus: ``_hw.tcl``, a component of Platform Designer, and ``.qip``, the list of files. Facts are
+those of the user guide 683609 (24.2), "Component Interface Tcl Reference", and of the Avalon
+specification 683091, "Reset Sink Interface Properties".
+
+LiteX: one Python file for a folder, with a ``LiteXModule`` for each design.
+
+No version of Vivado or Quartus has read what is written here; LiteX has.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import firm_hdl
+from firm_hdl.export.axis_leaves import AxisPort, axis_module
 from firm_hdl.export.backend import Converters, Output, module_name
+from firm_hdl.export.options import Ip as Tool
 from firm_hdl.export.registers import register_ports
 from firm_hdl.export.templates import render
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
@@ -24,10 +34,10 @@ if TYPE_CHECKING:
     from firm_hdl.registers import Register, RegisterMap
     from firm_hdl.registers.table import Kind
 
-__all__ = ["FOLDER", "Bus", "Ip", "buses_of", "ip_facts", "ip_files", "write"]
+__all__ = ["Bus", "Ip", "buses_of", "ip_facts", "ip_files", "write"]
 
-FOLDER = "ip"
-"""Subfolder that is an IP repository."""
+_FOLDER = "ip"
+"""Subfolder with a folder for each IP: a repository of Vivado, a search path of Quartus."""
 
 _VENDOR = "firm-hdl"
 
@@ -67,9 +77,9 @@ _ACCESS: dict[Kind, tuple[str, str]] = {
 
 _AXIS = ("tdata", "tkeep", "tlast", "tuser", "tdest", "tid", "tvalid", "tready")
 _AXI = (
-    *("awaddr", "awvalid", "awready", "wdata", "wstrb", "wvalid", "wready"),
+    *("awaddr", "awprot", "awvalid", "awready", "wdata", "wstrb", "wvalid", "wready"),
     *("bresp", "bvalid", "bready"),
-    *("araddr", "arvalid", "arready", "rdata", "rresp", "rvalid", "rready"),
+    *("araddr", "arprot", "arvalid", "arready", "rdata", "rresp", "rvalid", "rready"),
 )
 
 
@@ -131,35 +141,26 @@ class Bus:
     Attributes
     ----------
     name : str
-    type, abstraction : str
-        Names of definitions of Vivado, with vendor, library and version.
+    kind : str
+        Name of its definition in Vivado: ``axis`` and ``aximm`` are AXI4-Stream and AXI4-Lite.
     mode : "master" or "slave"
     ports : mapping of str to str
         Names of ports, by the names that the definition has for them.
     parameters : mapping of str to str
-    memory_map : str
-        Of a slave with registers.
+        Those of Vivado.
     """
 
     name: str
-    type: str
-    abstraction: str
+    kind: Literal["axis", "aximm", "clock", "reset", "interrupt"]
     mode: Literal["master", "slave"]
     ports: Mapping[str, str]
     parameters: Mapping[str, str] = field(default_factory=dict)
-    memory_map: str = ""
 
-
-def _bus(name: str, kind: str, mode: Any, ports: Mapping[str, str], **more: Any) -> Bus:
-    library, word = kind.split(":")
-    return Bus(
-        name=name,
-        type=f"xilinx.com:{library}:{word}:1.0",
-        abstraction=f"xilinx.com:{library}:{word}_rtl:1.0",
-        mode=mode,
-        ports=ports,
-        **more,
-    )
+    @property
+    def definition(self) -> str:
+        """Name of the definition, with vendor and library, without version."""
+        library = "interface" if self.kind in ("axis", "aximm") else "signal"
+        return f"xilinx.com:{library}:{self.kind}"
 
 
 def buses_of(ports: Sequence[Any]) -> list[Bus]:
@@ -169,36 +170,23 @@ def buses_of(ports: Sequence[Any]) -> list[Bus]:
     ``aclk``, its reset ``aresetn``, the interrupt ``irq``, and registers are ``s_axi``.
     """
     by_name = {port.name: port for port in ports}
-    streams = list(_streams(by_name))
+    buses = list(_streams(by_name))
     axi = {name.upper(): f"s_axi_{name}" for name in _AXI if f"s_axi_{name}" in by_name}
     if axi:
-        streams.append(_bus("s_axi", "interface:aximm", "slave", axi, memory_map="s_axi"))
-    clocked = ":".join(bus.name for bus in streams)
+        buses.append(Bus(name="s_axi", kind="aximm", mode="slave", ports=axi))
     # UG994, "Common Internal Bus Interfaces": a list with colons of all that the clock drives.
+    clocked = ":".join(bus.name for bus in buses)
     clock = {"ASSOCIATED_BUSIF": clocked, "ASSOCIATED_RESET": "aresetn"}
-    return [
-        *streams,
-        _bus("aclk", "signal:clock", "slave", {"CLK": "aclk"}, parameters=clock),
-        _bus(
-            "aresetn",
-            "signal:reset",
-            "slave",
-            {"RST": "aresetn"},
-            parameters={"POLARITY": "ACTIVE_LOW"},
-        ),
-        *(
-            [
-                _bus(
-                    "irq",
-                    "signal:interrupt",
-                    "master",
-                    {"INTERRUPT": "irq"},
-                    parameters={"SENSITIVITY": "LEVEL_HIGH"},
-                )
-            ]
-            if "irq" in by_name
-            else []
-        ),
+    reset, interrupt = {"POLARITY": "ACTIVE_LOW"}, {"SENSITIVITY": "LEVEL_HIGH"}
+    signals: list[tuple[Any, ...]] = [
+        ("aclk", "clock", "slave", {"CLK": "aclk"}, clock),
+        ("aresetn", "reset", "slave", {"RST": "aresetn"}, reset),
+        ("irq", "interrupt", "master", {"INTERRUPT": "irq"}, interrupt),
+    ]
+    return buses + [
+        Bus(name=name, kind=kind, mode=mode, ports=inside, parameters=parameters)
+        for name, kind, mode, inside, parameters in signals
+        if name in by_name
     ]
 
 
@@ -208,14 +196,35 @@ def _streams(by_name: Mapping[str, Any]) -> Iterator[Bus]:
         own = {each.upper(): f"{base}_{each}" for each in _AXIS if f"{base}_{each}" in by_name}
         if base != name and {"TVALID", "TREADY"} <= own.keys():
             mode = "slave" if port.direction == "in" else "master"
-            yield _bus(base, "interface:axis", mode, own)
+            yield Bus(name=base, kind="axis", mode=mode, ports=own)
 
 
-def ip_files(ip: Ip) -> dict[str, str]:
-    """Return the files of an IP, by paths in the folder of the design.
+def ip_files(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
+    """Return the files of a folder's IP, by paths in it.
 
-    The folder ``ip`` is the repository, and has a folder for each IP.
+    Parameters
+    ----------
+    tool : Tool
+    name : str
+        Name of the folder, with which names of designs begin.
+    designs : sequence of Ip
     """
+    designs = [_for_tool(tool, ip) for ip in designs]
+    if tool == "litex":
+        return {f"{name}_litex.py": _litex_module(name, designs)}
+    make = _vivado_files if tool == "vivado" else _quartus_files
+    return {
+        f"{_FOLDER}/{ip.name}/{file}": text for ip in designs for file, text in make(ip).items()
+    }
+
+
+def _pins(ip: Ip, buses: Sequence[Bus]) -> list[Any]:
+    """Return the ports that are in no interface."""
+    inside = {port for bus in buses for port in bus.ports.values()}
+    return [port for port in ip.ports if port.name not in inside]
+
+
+def _vivado_files(ip: Ip) -> dict[str, str]:
     buses = buses_of(ip.ports)
     xgui = f"{ip.name}_v{ip.version.replace('.', '_')}.tcl"
     values: dict[str, Any] = {
@@ -247,13 +256,96 @@ def ip_files(ip: Ip) -> dict[str, str]:
             "supported_families": " ".join(f"{family} Production" for family in _FAMILIES),
         },
     )
-    here = f"{FOLDER}/{ip.name}"
     return {
-        f"{here}/component.xml": component,
-        f"{here}/package.tcl": script,
-        **{f"{here}/{file}": text for file, text in ip.files.items()},
-        f"{here}/xgui/{xgui}": _XGUI,
+        "component.xml": component,
+        "package.tcl": script,
+        **ip.files,
+        f"xgui/{xgui}": _XGUI,
     }
+
+
+# Names of Platform Designer: kinds of interfaces, and roles of ports unless they are those of AXI.
+_QUARTUS_KINDS = {
+    "aximm": "axi4lite",
+    "axis": "axi4stream",
+    "clock": "clock",
+    "reset": "reset",
+    "interrupt": "interrupt",
+}
+_QUARTUS_ROLES = {"CLK": "clk", "RST": "reset_n", "INTERRUPT": "irq"}
+
+
+def _quartus_files(ip: Ip) -> dict[str, str]:
+    buses = buses_of(ip.ports)
+    by_name = {port.name: port for port in ip.ports}
+    # What others refer to comes first.
+    order = ("clock", "reset", "aximm", "axis", "interrupt")
+    script = render(
+        "packaging/quartus_hw.tcl",
+        ip=ip,
+        interfaces=[
+            (
+                bus,
+                _QUARTUS_KINDS[bus.kind],
+                # An interrupt begins where it is received.
+                "start" if bus.kind == "axis" and bus.mode == "master" else "end",
+                [
+                    (by_name[port], _QUARTUS_ROLES.get(role, role.lower()))
+                    for role, port in bus.ports.items()
+                ],
+            )
+            for bus in sorted(buses, key=lambda bus: order.index(bus.kind))
+        ],
+        pins=_pins(ip, buses),
+    )
+    listed = "".join(
+        f"set_global_assignment -name {'SYSTEM' if file.endswith('.sv') else ''}VERILOG_FILE "
+        f'[file join $::quartus(qip_path) "{file}"]\n'
+        for file in ip.files
+    )
+    return {f"{ip.name}_hw.tcl": script, f"{ip.name}.qip": listed, **ip.files}
+
+
+def _for_tool(tool: Tool, ip: Ip) -> Ip:
+    """For Quartus, add AWPROT and ARPROT to AXI4-Lite: they are required (IHI 0022, Table B1-1)."""
+    if tool != "quartus" or ip.table is None:
+        return ip
+    module = f"{ip.module.removesuffix('_verilog')}_quartus_verilog"
+    ports = [
+        AxisPort(
+            name=port.name,
+            direction=port.direction,
+            width=port.width,
+            inner=port.name,
+            inner_width=port.width,
+        )
+        for port in ip.ports
+    ]
+    ports += [
+        AxisPort(name=f"s_axi_{name}", direction="in", width=3, inner="", inner_width=3)
+        for name in ("awprot", "arprot")
+    ]
+    text = axis_module(module, ip.module, ports, "")
+    return replace(ip, module=module, ports=ports, files={**ip.files, f"{module}.v": text})
+
+
+def _litex_module(name: str, designs: Sequence[Ip]) -> str:
+    def class_name(ip: Ip) -> str:
+        return ip.name.removeprefix(name).title().replace("_", "") or "Node"
+
+    def design(ip: Ip) -> dict[str, Any]:
+        buses = buses_of(ip.ports)
+        return {
+            "ip": ip,
+            "name": class_name(ip),
+            "streams": [bus for bus in buses if bus.kind == "axis"],
+            "has_status": ip.library != "node" and "m_axis_status" in {bus.name for bus in buses},
+            "ports": {port.name: port for port in ip.ports},
+            "pins": _pins(ip, buses),
+            "defaults": {**_defaults(ip, buses), **ip.defaults},
+        }
+
+    return render("packaging/litex.py", name=name, designs=[design(ip) for ip in designs])
 
 
 def _access(register: Register) -> str:
@@ -330,8 +422,12 @@ def write(converters: Converters, texts: Mapping[str, str]) -> Output:
                 table=layout.table,
             )
         )
-    files = {name: text for ip in designs for name, text in ip_files(ip).items()}
-    return Output(files=files, manifest={"ip": ip_facts(designs)})
+    tool = converters.options.ip
+    assert tool is not None
+    return Output(
+        files=ip_files(tool, converters.name, designs),
+        manifest={"ip": ip_facts(tool, converters.name, designs)},
+    )
 
 
 _WHAT: dict[Direction, str] = {
@@ -356,15 +452,21 @@ def _tied(plan: Plan, ports: Sequence[Any], way: Direction) -> dict[str, int]:
     return found
 
 
-def ip_facts(designs: Iterable[Ip]) -> dict[str, Any]:
+def ip_facts(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, Any]:
     """Return the manifest's entry `ip`."""
+    designs = [_for_tool(tool, ip) for ip in designs]
+    component = {
+        "vivado": f"{_FOLDER}/{{0}}/component.xml",
+        "quartus": f"{_FOLDER}/{{0}}/{{0}}_hw.tcl",
+        "litex": f"{name}_litex.py",
+    }[tool]
     return {
-        "tool": "vivado",
-        "repository": FOLDER,
+        "tool": tool,
+        "repository": "." if tool == "litex" else _FOLDER,
         "components": [
             {
                 "name": f"{ip.vendor}:{ip.library}:{ip.name}:{ip.version}",
-                "component": f"{FOLDER}/{ip.name}/component.xml",
+                "component": component.format(ip.name),
                 "module": ip.module,
                 "buses": [bus.name for bus in buses_of(ip.ports)],
             }
