@@ -14,9 +14,6 @@ from tests.depth import LIVE, THOROUGH, not_sampled
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
-# A circuit has hundreds of thousands of objects, most of which live as long as their test.
-gc.set_threshold(100_000, 20, 20)
-
 # A test must not fail because the machine is busy.
 settings.register_profile("unhurried", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("unhurried")
@@ -37,8 +34,20 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_collection_finish() -> None:
-    """Keep Python from searching the modules and items, which live to the end, for cycles."""
+    """Keep Python from searching the modules and items, which live to the end, for cycles.
+
+    A circuit has hundreds of thousands of objects, most of which live as long as their test.
+    """
     gc.freeze()
+    gc.set_threshold(100_000, 20, 20)
+    if not THOROUGH:
+        gc.disable()
+
+
+def pytest_runtest_teardown() -> None:
+    """Search for cycles after tests that have made many objects."""
+    if gc.get_count()[0] > 1_000_000:
+        gc.collect()
 
 
 @pytest.fixture(scope="session")

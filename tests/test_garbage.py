@@ -10,6 +10,14 @@ import pytest
 from firm_hdl.garbage import search_put_off
 
 
+@pytest.fixture(autouse=True)
+def searches():
+    """Let Python search, as other tests do not."""
+    gc.enable()
+    yield
+    gc.disable()
+
+
 class Ring:
     """An object that refers to itself, so that only a search frees it."""
 

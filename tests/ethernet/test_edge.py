@@ -7,7 +7,7 @@ import logging
 import pytest
 
 logging.getLogger("scapy").setLevel(logging.ERROR)
-scapy = pytest.importorskip("scapy.all")
+scapy = pytest.importorskip("scapy.layers.inet")
 
 from tests.depth import by_depth  # noqa: E402
 from tests.ethernet.bench import (  # noqa: E402
@@ -29,9 +29,9 @@ from tests.ethernet.bench import (  # noqa: E402
     wire,
 )
 
-Ether, ARP, IP, ICMP, UDP, Raw = (
-    getattr(scapy, name) for name in ("Ether", "ARP", "IP", "ICMP", "UDP", "Raw")
-)
+Ether, IP, ICMP, UDP = (getattr(scapy, name) for name in ("Ether", "IP", "ICMP", "UDP"))
+Raw = pytest.importorskip("scapy.packet").Raw
+ARP = pytest.importorskip("scapy.layers.l2").ARP
 BROADCAST = "ff:ff:ff:ff:ff:ff"
 
 

@@ -36,11 +36,11 @@ def unused(make: Callable[[], object]) -> list[str]:
     """Return the warnings of a component that is made and not used."""
     # Amaranth warns only after it has elaborated something.
     Fragment.get(PacketWidth(4, 8), None)
-    gc.collect()
+    gc.collect(1)
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", UnusedElaboratable)
         make()
-        gc.collect()
+        gc.collect(1)
     return [str(each.message) for each in found]
 
 

@@ -21,7 +21,7 @@ from firm_hdl.timing.cycles import (
     serializer_cycles,
 )
 from firm_hdl.wire import lay_out
-from tests.depth import by_depth
+from tests.depth import THOROUGH, by_depth
 from tests.gateware.traffic import random_packets
 from tests.strategies import make
 
@@ -63,8 +63,10 @@ def fixed_types():
                 yield pytest.param(library.message(name), id=f"{distro}-{name}")
 
 
-@pytest.mark.parametrize("message", list(fixed_types())[:: by_depth(16, 1)])
-@pytest.mark.sampled(8)
+@pytest.mark.parametrize(
+    "message",
+    fixed_types() if THOROUGH else [Library("noetic").message("geometry_msgs/Pose2D")],
+)
 def test_types_of_fixed_size_run_at_line_rate(message):
     packets = fixed_packets(message, PACKETS)
     found = packet_of(build_plan(lay_out(message), bus_bytes=8), packets[0])

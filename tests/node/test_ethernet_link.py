@@ -16,7 +16,8 @@ from tests.ethernet.bench import PREAMBLE, checked
 from tests.node.samples import LIBRARY
 from tests.node.traffic import frames_of, link_beats, some
 
-scapy = pytest.importorskip("scapy.all")
+scapy = pytest.importorskip("scapy.layers.inet")
+ARP = pytest.importorskip("scapy.layers.l2").ARP
 
 TEXT = """\
 node: n
@@ -47,7 +48,7 @@ def test_messages_pass_the_pins_both_ways_and_what_is_lost_is_counted(mhz):
     text = TEXT.replace("clock_mhz: 125", f"clock_mhz: {mhz}")
     link = EthernetLink(read_description_text(text, name="n.yaml", library=LIBRARY))
     down, up = some(2, 1), some(1, 2)
-    answer = scapy.Ether(dst=LINK.mac, src="02:00:00:00:00:02") / scapy.ARP(
+    answer = scapy.Ether(dst=LINK.mac, src="02:00:00:00:00:02") / ARP(
         op=2, hwsrc="02:00:00:00:00:02", psrc="10.0.0.7", pdst="10.0.0.50"
     )
     wires = [frame(data) for data in frames_of(down)]

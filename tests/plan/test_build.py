@@ -10,7 +10,7 @@ from firm_hdl.plan import build_plan, check, decode, encode
 from firm_hdl.plan.tree import Run, Step, walk
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import lay_out
-from tests.strategies import BUS_WIDTHS, make
+from tests.strategies import make, on_every_bus
 
 BLOB = make("ros2", {"x": "uint32", "data": "uint8[]"})
 
@@ -57,7 +57,7 @@ def test_the_smallest_message_is_the_largest_if_so_wished():
     assert decode(plan, packet[:8] + b"\1\0\0\0x").status == "LENGTH"
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_bulk_data_takes_a_bus_word_per_cycle(bus_bytes):
     plan = build_plan(lay_out(BLOB), bus_bytes=bus_bytes)
     value = {"x": 1, "data": bytes(range(256)) * 16}
@@ -66,7 +66,7 @@ def test_bulk_data_takes_a_bus_word_per_cycle(bus_bytes):
     assert len(decode(plan, packet).steps) <= beats + 2
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_fixed_fields_take_no_more_cycles_than_beats(bus_bytes):
     kinds = ["uint8", "float64", "uint16", "uint32", "float64[9]", "uint8[21]"]
     message = make("ros2", {f"f{n}": kinds[n % len(kinds)] for n in range(40)})
@@ -136,7 +136,7 @@ def test_arrays_are_values_runs_or_loops(wire, kind, bus_bytes, runs, levels):
         assert check(plan, layout) == []
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 @pytest.mark.parametrize(("inner", "outer"), [("[2]", "[]"), ("[]", "[2]"), ("[2]", "[3]")])
 def test_a_step_takes_the_rest_of_one_run_only(wire, bus_bytes, inner, outer):

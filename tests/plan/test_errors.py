@@ -7,7 +7,7 @@ import pytest
 from firm_hdl.plan import build_plan, decode, encode
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
-from tests.strategies import BUS_WIDTHS, make
+from tests.strategies import make, on_every_bus
 
 POINT = make("ros2", {"x": "uint16", "y": "uint16"}, "Point")
 MESSAGE = make(
@@ -32,7 +32,6 @@ VALUE = {
 PACKET = bytes.fromhex(
     "00010000010000000500000061626364000000000200000001000200030004000300000005000600070008090a0b"
 )
-every_bus = pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
 
 
 def plan_for(bus_bytes, message=MESSAGE):
@@ -52,12 +51,12 @@ def changed(value=VALUE, /, **fields):
 ZERO = {"a": 0, "s": "", "ps": [], "q": [], "f": [0, 0, 0], "z": 0}
 
 
-@every_bus
+@on_every_bus
 def test_the_packet_under_test_is_good(bus_bytes):
     assert read(PACKET, bus_bytes) == ("OK", VALUE)
 
 
-@every_bus
+@on_every_bus
 @pytest.mark.parametrize(
     ("size", "value"),
     [
@@ -84,27 +83,27 @@ def test_cut_packet_keeps_whole_values_and_completes_with_zeros(bus_bytes, size,
     assert read(PACKET[:size], bus_bytes) == ("TRUNCATED", value)
 
 
-@every_bus
+@on_every_bus
 @pytest.mark.parametrize("count", [4, 5, 100])
 def test_more_trailing_bytes_than_padding_are_an_error(bus_bytes, count):
     assert read(PACKET + bytes(count), bus_bytes) == ("TRAILING", VALUE)
 
 
-@every_bus
+@on_every_bus
 def test_ros1_takes_no_trailing_byte(bus_bytes):
     message = make("ros1", {"a": "uint8"})
     assert read(b"\1", bus_bytes, message) == ("OK", {"a": 1})
     assert read(b"\1\0", bus_bytes, message) == ("TRAILING", {"a": 1})
 
 
-@every_bus
+@on_every_bus
 @pytest.mark.parametrize("header", ["0000", "0101", "0003", "0100", "ff01"])
 def test_another_representation_gives_zeros(bus_bytes, header):
     packet = bytes.fromhex(header) + PACKET[2:]
     assert read(packet, bus_bytes) == ("ENCAPSULATION", ZERO)
 
 
-@every_bus
+@on_every_bus
 def test_the_first_error_counts(bus_bytes):
     assert read(b"\1", bus_bytes) == ("ENCAPSULATION", ZERO)
     assert read(b"\0", bus_bytes) == ("TRUNCATED", ZERO)
@@ -113,33 +112,33 @@ def test_the_first_error_counts(bus_bytes):
     assert read(PACKET[:16] + b"x", bus_bytes)[0] == "STRING"
 
 
-@every_bus
+@on_every_bus
 @pytest.mark.parametrize("length", [8, 9, 255, 0xFFFFFFFF])
 def test_a_length_over_the_bound_is_zero_and_ends_it(bus_bytes, length):
     packet = PACKET[:8] + length.to_bytes(4, "little") + PACKET[12:]
     assert read(packet, bus_bytes) == ("LENGTH", changed(ZERO, a=1))
 
 
-@every_bus
+@on_every_bus
 def test_a_length_of_the_bound_is_legal(bus_bytes):
     text = VALUE["s"] + "ef"
     body = b"\7\0\0\0" + text.encode() + b"\0" + b"\0"
     assert read(PACKET[:8] + body + PACKET[20:], bus_bytes) == ("OK", changed(s=text))
 
 
-@every_bus
+@on_every_bus
 def test_a_sequence_over_its_bound_leaves_what_was_before(bus_bytes):
     packet = PACKET[:20] + b"\4\0\0\0" + PACKET[24:]
     assert read(packet, bus_bytes) == ("LENGTH", changed(ZERO, a=1, s="abcd"))
 
 
-@every_bus
+@on_every_bus
 def test_a_missing_nul_keeps_the_string_and_ends_the_rest(bus_bytes):
     packet = PACKET[:16] + b"e" + PACKET[17:]
     assert read(packet, bus_bytes) == ("STRING", changed(ZERO, a=1, s="abcd"))
 
 
-@every_bus
+@on_every_bus
 def test_a_string_of_length_zero_is_the_empty_string_without_nul(bus_bytes):
     message = make("ros2", {"s": "string", "x": "uint32"})
     packet = bytes.fromhex("000100000000000005000000")
@@ -147,7 +146,7 @@ def test_a_string_of_length_zero_is_the_empty_string_without_nul(bus_bytes):
     assert decode(plan_for(bus_bytes, message), packet).streams == {0: [0], 2: [5]}
 
 
-@every_bus
+@on_every_bus
 def test_max_message_bytes_bounds_every_length(bus_bytes):
     message = make("ros2", {"s": "string", "q": "float64[]"})
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes, max_message_bytes=40)
@@ -173,7 +172,7 @@ def test_of_a_bound_and_the_room_the_smaller_counts(fields, limits):
     assert {str(plan.leaves[n]): length.limit for n, length in plan.lengths.items()} == limits
 
 
-@every_bus
+@on_every_bus
 def test_a_trigger_transfers_as_one_even_after_an_error(bus_bytes):
     message = make("ros1", {"a": "uint16", "e": make("ros1", {}, "E")})
     plan = plan_for(bus_bytes, message)
@@ -187,7 +186,7 @@ def write(streams, bus_bytes, message=MESSAGE):
     return encode(plan_for(bus_bytes, message), streams)
 
 
-@every_bus
+@on_every_bus
 def test_a_length_over_the_bound_is_written_as_promised(bus_bytes):
     plan = plan_for(bus_bytes)
     value = changed(s="abcdefgh")
@@ -198,7 +197,7 @@ def test_a_length_over_the_bound_is_written_as_promised(bus_bytes):
     assert packet == PACKET[:8] + body + PACKET[20:]
 
 
-@every_bus
+@on_every_bus
 def test_lengths_of_the_bound_are_written_without_an_error(bus_bytes):
     plan = plan_for(bus_bytes)
     value = changed(s="abcdef", ps=[{"x": 1, "y": 2}] * 3)
@@ -206,7 +205,7 @@ def test_lengths_of_the_bound_are_written_without_an_error(bus_bytes):
     assert status == "OK" and read(packet, bus_bytes) == ("OK", value)
 
 
-@every_bus
+@on_every_bus
 @pytest.mark.parametrize(("text", "packet"), [("", "00000000"), ("a", "020000006100|0000")])
 def test_an_empty_string_may_be_written_without_its_nul(bus_bytes, text, packet):
     message = make("ros2", {"s": "string", "x": "uint32"})
@@ -218,7 +217,7 @@ def test_an_empty_string_may_be_written_without_its_nul(bus_bytes, text, packet)
     assert len(encode(plan, streams)[0]) == 16
 
 
-@every_bus
+@on_every_bus
 @pytest.mark.parametrize("name", ["s.items", "q.items", "f.items"])
 @pytest.mark.parametrize("which", [0, -1])
 def test_last_that_disagrees_is_reported_and_the_length_rules(bus_bytes, name, which):
@@ -230,7 +229,7 @@ def test_last_that_disagrees_is_reported_and_the_length_rules(bus_bytes, name, w
     assert encode(plan, streams) == (PACKET, "ITEMS")
 
 
-@every_bus
+@on_every_bus
 def test_the_serializer_reports_its_first_error(bus_bytes):
     message = make("ros2", {"a": "uint8[]", "b": "uint8[<=1]"})
     plan = plan_for(bus_bytes, message)
@@ -241,7 +240,7 @@ def test_the_serializer_reports_its_first_error(bus_bytes):
     assert encode(plan, streams)[1] == "ITEMS"
 
 
-@every_bus
+@on_every_bus
 def test_lanes_past_the_end_do_not_reach_the_wire(bus_bytes):
     message = make("ros2", {"s": "string", "q": "uint16[]", "f": "uint8[3]"})
     plan = plan_for(bus_bytes, message)
@@ -258,7 +257,7 @@ def test_lanes_past_the_end_do_not_reach_the_wire(bus_bytes):
     assert encode(plan, streams) == want
 
 
-@every_bus
+@on_every_bus
 def test_numbers_are_cut_to_the_width_of_their_leaf(bus_bytes):
     plan = plan_for(bus_bytes, make("ros1", {"a": "bool", "b": "uint8", "c": "int16", "d": "bool"}))
     streams = {0: [2], 1: [0x1FE], 2: [-0x18002], 3: [3]}

@@ -16,7 +16,7 @@ from firm_hdl.wire import lay_out, walk
 from firm_hdl.wire.layout import LoopNode, RunNode, Scalar, Trigger
 from tests.depth import by_depth
 from tests.plan.test_random_messages import damaged, typed_values
-from tests.strategies import BUS_WIDTHS, make
+from tests.strategies import BUS_WIDTHS, make, on_every_bus
 
 slow = settings(
     max_examples=by_depth(25, 100),
@@ -52,7 +52,7 @@ def test_both_plans_give_the_same_status(wire, data, case, bus_bytes):
         assert decode(short, packet).status == decode(plan, packet).status
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 @pytest.mark.parametrize("wire", ["ros1", "cdr"])
 def test_lengths_and_their_limits_stay(wire, bus_bytes):
     message = load_message("visualization_msgs/msg/InteractiveMarker")
@@ -68,7 +68,7 @@ def test_lengths_and_their_limits_stay(wire, bus_bytes):
     assert names[0] == names[1]
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_padding_within_the_first_element_of_a_loop(bus_bytes):
     element = make("ros2", {"a": "float32", "b": "string"}, "Element")
     _, short = plans_of(

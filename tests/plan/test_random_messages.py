@@ -15,7 +15,15 @@ from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.plan.reference import Reference
-from tests.strategies import BUS_WIDTHS, Definition, definitions, make, to_rosbags, values
+from tests.strategies import (
+    BUS_WIDTHS,
+    Definition,
+    definitions,
+    make,
+    on_every_bus,
+    to_rosbags,
+    values,
+)
 
 slow = settings(
     max_examples=by_depth(15, 100),
@@ -104,7 +112,7 @@ def test_any_packet_decodes_as_the_contract_says_on_every_bus(wire, case, data):
         assert named(plan, packet) == (reference.transfers, reference.status)
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 @pytest.mark.parametrize(("letters", "status"), [(600, "LENGTH"), (300, "TRUNCATED")])
 def test_nested_lengths_share_a_budget_as_the_contract_says(letters, status, bus_bytes):
     element = make("ros1", {"x": "uint32", "s": "string"}, "Element")

@@ -11,7 +11,7 @@ from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan, decode, encode
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
-from tests.strategies import BUS_WIDTHS
+from tests.strategies import on_every_bus
 
 # Correct differences of converters: they neither cut at a NUL nor take more than the bound.
 OTHERWISE = {"str_nul", "bounded_overflow"}
@@ -34,7 +34,7 @@ def cases(folder):
     }
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_values_become_the_reference_bytes_and_back(cases, bus_bytes):
     assert len(cases) >= 23
     for name in sorted(cases.keys() - OTHERWISE):
@@ -46,7 +46,7 @@ def test_values_become_the_reference_bytes_and_back(cases, bus_bytes):
         assert from_transfers(plan, message, decoded.streams) == value, name
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_a_nul_in_a_string_is_a_character(cases, bus_bytes):
     message, value, packet = cases["str_nul"]
     assert packet.hex() == "00010000020000006100"
@@ -56,7 +56,7 @@ def test_a_nul_in_a_string_is_a_character(cases, bus_bytes):
     assert from_transfers(plan, message, decode(plan, got).streams) == value
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_a_string_over_its_bound_is_written_and_refused_when_read(cases, bus_bytes):
     message, value, packet = cases["bounded_overflow"]
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)

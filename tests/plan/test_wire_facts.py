@@ -17,7 +17,7 @@ from firm_hdl.model import IDL_PRIMITIVES, Array, Field, Message, Sequence, idl_
 from firm_hdl.plan import build_plan, decode, encode, to_yaml
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.wire import lay_out
-from tests.strategies import BUS_WIDTHS, TIMES, make
+from tests.strategies import BUS_WIDTHS, TIMES, make, on_every_bus
 
 ROS1, ROS2 = "ros1", "ros2"
 EMPTY1 = make(ROS1, {}, "E")
@@ -183,7 +183,7 @@ def data(text: str) -> bytes:
     return bytes.fromhex(text.replace("|", ""))
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 @pytest.mark.parametrize("fact", FACTS)
 def test_bytes_are_as_the_wire_format_says(fact, bus_bytes):
     dialect, fields, value, text = FACTS[fact]
@@ -197,7 +197,7 @@ def test_bytes_are_as_the_wire_format_says(fact, bus_bytes):
     assert from_transfers(plan, message, decoded.streams) == value
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_bool_is_one_for_any_byte_but_zero(bus_bytes):
     message = make(ROS2, {"a": "bool", "b": "bool[5]"})
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -208,7 +208,7 @@ def test_bool_is_one_for_any_byte_but_zero(bus_bytes):
     assert encode(plan, decoded.streams)[0] == data("00010000 01 00 01 01 01 00")
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_options_and_up_to_three_trailing_bytes_are_ignored(bus_bytes):
     message = make(ROS2, {"a": "uint8"})
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -217,7 +217,7 @@ def test_options_and_up_to_three_trailing_bytes_are_ignored(bus_bytes):
         assert (decoded.status, decoded.streams) == ("OK", {0: [5]})
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 def test_a_nan_keeps_its_payload(bus_bytes):
     message = make(ROS2, {"f": "float32", "d": "float64", "fs": "float32[]"})
     plan = build_plan(lay_out(message), bus_bytes=bus_bytes)
@@ -231,7 +231,7 @@ def test_a_nan_keeps_its_payload(bus_bytes):
     assert math.isnan(from_transfers(plan, message, decode(plan, packet).streams)["d"])
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 @pytest.mark.parametrize("count", [0, 1, 2, 3, 7, 8, 9, 15, 16, 17, 63, 64, 65, 127, 128, 129])
 def test_strings_of_every_residue_end_where_they_should(bus_bytes, count):
     message = make(ROS2, {"s": "string", "x": "uint32"})
@@ -266,7 +266,7 @@ WIDE = {
 """A message, a value and its packet, by the size of a wide character."""
 
 
-@pytest.mark.parametrize("bus_bytes", BUS_WIDTHS)
+@on_every_bus
 @pytest.mark.parametrize("size", WIDE)
 def test_a_wide_character_has_the_bytes_of_its_distribution(size, bus_bytes):
     message, value, packet = WIDE[size]

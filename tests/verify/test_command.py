@@ -21,7 +21,8 @@ from tests.depth import by_depth
 from tests.verify.report.samples import a_record
 from tests.verify.samples import own_package
 
-BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "std_msgs/msg/Bool"]
+BOOL = ["--distro", "lyrical", "--jobs", "1", "--cases", "2", "--reference", "none"]
+BOOL += ["std_msgs/msg/Bool"]
 
 
 @pytest.mark.parametrize("arguments", [["--simulator", "ghdl"], ["--systems", "bench"]])
@@ -79,7 +80,7 @@ def test_the_active_workspace_is_searched(capsys, tmp_path, monkeypatch):
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(parents=True)
         (tmp_path / name).write_text(text)
-    few = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken"]
+    few = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken", "--reference", "none"]
     # The others take seconds to start; they get the same definitions.
     oracle = by_depth(["--oracle", "rosbags"], [])
     prefixes = os.pathsep.join([str(tmp_path / "a"), str(tmp_path / "b")])

@@ -77,7 +77,8 @@ def test_types_that_others_depend_on_are_not_judged_and_commands_name_their_fold
     for record in found.records.values():
         program, *again = shlex.split(record.command)
         assert program == "firm-hdl" and "--path own --depends more" in record.command
-        assert main([*again, "--jobs", "1"]) == 0
+        if record.test.system == "ts1":
+            assert main([*again, "--jobs", "1"]) == 0
     # A folder without definitions has nothing to judge.
     (tmp_path / "own/p/msg/A.msg").unlink()
     assert main(["verify", "--systems", "ts1", "--all", *words[1:7]]) == 1

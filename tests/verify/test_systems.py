@@ -24,6 +24,7 @@ from tests.verify.judged import assert_known, assert_passed, without_times
 BOOL, CHAR = "std_msgs/msg/Bool", "std_msgs/msg/Char"
 # rosbags is always installed.
 FAST = ["--jobs", "1", "--distro", "lyrical", "--oracle", "rosbags", "--cases", "2"]
+FAST += ["--reference", "none"]
 ALL = ["--systems", "ts1,ts2,ts3"]
 
 

@@ -25,6 +25,7 @@ from tests.verify.report.samples import a_record, a_test
 PASSED, KNOWN = Passed(3), KnownDifference(("a-key",), 1)
 FAILED, SILENT = Failed(("no",)), NotJudged("nobody knows")
 FEW = ["--jobs", "1", "--cases", "1", "--no-stalls", "--no-broken", "--distro", "lyrical"]
+FEW += ["--reference", "none"]
 
 
 def found(*verdicts):
