@@ -53,7 +53,7 @@ _USUAL_SYSTEMS = ("ts3",)
 
 # Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
-    *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
+    *("bag", "bus_bytes", "executor", "golden", "oracle", "reference"),
     *("share_circuits", "simulator", "systems", "vcd"),
     *("board", "node", "write_node"),
 )
@@ -326,13 +326,6 @@ def _add_ts1(group: argparse._ArgumentGroup) -> None:
         default=[],
         choices=ORACLE_NAMES,
         help="oracle to use; repeatable; default: all installed",
-    )
-    group.add_argument(
-        "--mutations",
-        type=positive,
-        default=0,
-        metavar="N",
-        help="judge N mutated definitions instead of the originals",
     )
 
 

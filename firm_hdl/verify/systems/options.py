@@ -151,8 +151,6 @@ class Request(Options):
         See :func:`firm_hdl.jobs.executors.run_each`.
     oracles : tuple of str
         Oracles of TS1; empty: all that are installed.
-    mutations : int
-        Number of mutated definitions that TS1 judges instead of the original ones; 0: none.
     golden : str or None
         Folder of golden plans.
     share_circuits : bool or None
@@ -178,7 +176,6 @@ class Request(Options):
     jobs: int | None = None
     executor: str = PROCESSES
     oracles: tuple[str, ...] = ()
-    mutations: int = 0
     golden: str | None = None
     share_circuits: bool | None = None
     board: str | None = None

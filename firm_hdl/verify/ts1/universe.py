@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -60,14 +59,6 @@ class DefinitionCase:
     def is_changed(self) -> bool:
         """Whether the text differs from that of the file."""
         return self.before is not None
-
-    @property
-    def changes(self) -> list[str]:
-        """Lines that a change has removed (``-``) and added (``+``)."""
-        lines = difflib.unified_diff(
-            (self.before or "").splitlines(), self.text.splitlines(), lineterm="", n=0
-        )
-        return [repr(line)[1:-1] for line in list(lines)[2:] if not line.startswith("@@")]
 
     @property
     def full_name(self) -> str:

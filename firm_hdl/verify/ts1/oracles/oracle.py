@@ -40,7 +40,7 @@ class Oracle(ABC):
     languages : mapping of str to set of str
         The languages that it reads, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
     judges_changes : bool
-        Whether it is asked about mutations, which mostly have mistakes.
+        Whether it is asked about changed texts, which mostly have mistakes.
     """
 
     name: ClassVar[str]
