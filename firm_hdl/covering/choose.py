@@ -35,16 +35,10 @@ FAMILIES = ("grammar", "definition", "layout", "plan")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chosen:
-    """A type of a covering set.
-
-    Attributes
-    ----------
-    adds : tuple of str
-        The features that no type chosen before this one has.
-    """
+    """A type of a covering set."""
 
     name: str
-    adds: tuple[str, ...]
+    adds: tuple[str, ...]  # The features that no type chosen before this one has.
 
 
 def features(message: Message, plan: Plan) -> frozenset[str]:

@@ -117,24 +117,14 @@ def _facts(results: str) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Workload:
-    """A request and its types.
+    """A request and its types."""
 
-    Attributes
-    ----------
-    request : Request
-        Its `paths` are the folders of the workspace if the types were found there.
-    tasks : sequence of TypeUnderTest
-        The types that are tested; empty if only TS1 runs, which looks up the types itself.
-    problems : mapping of str to Diagnostic
-        Errors by their texts. Types without errors are tested nevertheless.
-    board : Description or None
-        The node of the board, if there is one.
-    """
-
-    request: Request
+    request: Request  # Its `paths` are the folders of the workspace if the types were found there.
+    # The types that are tested; empty if only TS1 runs, which looks up the types itself.
     tasks: Sequence[TypeUnderTest]
+    # Errors by their texts. Types without errors are tested nevertheless.
     problems: Mapping[str, Diagnostic]
-    board: Description | None = None
+    board: Description | None = None  # The node of the board, if there is one.
 
 
 def resolve(request: Request) -> Workload:

@@ -68,15 +68,9 @@ def counted(records: Iterable[Record]) -> list[Record]:
 
 
 class System(ABC):
-    """A test system with all its tests; a context manager.
+    """A test system with all its tests; a context manager."""
 
-    Attributes
-    ----------
-    name : str
-        The name that ``--systems`` takes.
-    """
-
-    name: ClassVar[str]
+    name: ClassVar[str]  # The name that `--systems` takes.
 
     def __enter__(self) -> System:
         return self
@@ -162,27 +156,15 @@ class Stopwatch:
 
 @dataclass(slots=True, kw_only=True)
 class Trial:
-    """A test that runs, and what it has found so far.
+    """A test that runs, and what it has found so far."""
 
-    Attributes
-    ----------
-    record : Record
-        Receives figures and notes. Its verdict, its times and nothing else are set at the end.
-    failures : list of str
-        Failures in the order in which they were found.
-    judged : int
-        The number of cases that were compared with an oracle.
-    known : tuple of str
-        Keys of the known differences that were found.
-    obstacle : NotJudged or None
-        Why the test cannot be judged.
-    """
-
+    # Receives figures and notes. Its verdict, its times and nothing else are set at the end.
     record: Record
+    # Failures in the order in which they were found.
     failures: list[str] = field(default_factory=list)
-    judged: int = 0
-    known: tuple[str, ...] = ()
-    obstacle: NotJudged | None = None
+    judged: int = 0  # The number of cases that were compared with an oracle.
+    known: tuple[str, ...] = ()  # Keys of the known differences that were found.
+    obstacle: NotJudged | None = None  # Why the test cannot be judged.
     watch: Stopwatch = field(default_factory=Stopwatch)
 
     @classmethod
