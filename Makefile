@@ -153,8 +153,8 @@ prove: $(VENV)/.installed-dev ghdl ## proofs that VHDL equals RTLIL, for types w
 COVERING := tests/verify/covering
 COVER    ?= --out
 cover: $(VENV)/.installed ## choose the types that tests simulate (2 minutes)
-	$(BIN)/firm-hdl cover --distro lyrical --branches $(COVER) $(COVERING)/lyrical.txt
-	$(BIN)/firm-hdl cover --distro noetic --branches $(COVER) $(COVERING)/noetic.txt
+	$(BIN)/python -m lab.covering --distro lyrical $(COVER) $(COVERING)/lyrical.txt
+	$(BIN)/python -m lab.covering --distro noetic $(COVER) $(COVERING)/noetic.txt
 
 # Verilog, VHDL and benches of a covering set, in build/vhdl_out; `simulate` runs the benches in GHDL.
 GENERATED ?= build/vhdl_out

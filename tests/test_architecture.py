@@ -72,7 +72,7 @@ MAY_IMPORT["node"] = {
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
-    *("errors", "files", "model", "frontend", "wire", "plan", "gateware", "export", "terminal"),
+    *("errors", "files", "model", "frontend", "wire", "plan", "export", "terminal"),
 }
 # Messages and packets to try, and the oracle that writes them.
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}

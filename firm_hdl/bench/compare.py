@@ -25,20 +25,11 @@ FIGURES = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A figure that changed.
+    """A figure that changed."""
 
-    Attributes
-    ----------
-    result : Result
-        The newer result of the converter.
-    figure : str
-        One of `FIGURES`.
-    old, new : float or None
-        `None` if there is no figure.
-    """
-
-    result: Result
-    figure: str
+    result: Result  # The newer result of the converter.
+    figure: str  # One of `FIGURES`.
+    # `None` if there is no figure.
     old: float | None
     new: float | None
 

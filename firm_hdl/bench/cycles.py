@@ -22,26 +22,17 @@ Converter: TypeAlias = "Deserializer | Serializer"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cycles:
-    """The cycles of messages that come back to back, without stalls.
+    """The cycles of messages that come back to back, without stalls."""
 
-    Attributes
-    ----------
-    messages : Stated
-        The messages; `count` is the number of messages that were measured.
-    bytes, beats : int
-        Size of the packets of the measured messages.
-    cycles : int
-        Cycles from the end of the first message, which is not measured, to the end of the last. A
-        message ends with its last transfer out: that of a leaf or beat, or a later status.
-    latency : int
-        Cycles of the first message alone, from its last transfer in to its last transfer out.
-        Transfers are those of leaves or beats.
-    """
-
-    messages: Stated
+    messages: Stated  # The messages; `count` is the number of messages that were measured.
+    # Size of the packets of the measured messages.
     bytes: int
     beats: int
+    # Cycles from the end of the first message, which is not measured, to the end of the last. A
+    # message ends with its last transfer out: that of a leaf or beat, or a later status.
     cycles: int
+    # Cycles of the first message alone, from its last transfer in to its last transfer out.
+    # Transfers are those of leaves or beats.
     latency: int
 
     @property

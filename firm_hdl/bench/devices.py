@@ -11,44 +11,22 @@ __all__ = ["DEVICES", "Area", "CellPorts", "Device", "Placer"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Area:
-    """Cells of a circuit, without the registers around it that serve to measure its clock rate.
+    """Cells of a circuit, without the registers around it that serve to measure its clock rate."""
 
-    Attributes
-    ----------
-    lut : int
-        Look-up tables of logic, without carry chains and memories.
-    ff : int
-        Flip-flops.
-    carry : int
-        Cells of carry chains.
-    lutram : int
-        Memory cells made of look-up tables.
-    bram : int
-        Block RAMs.
-    """
-
-    lut: int = 0
-    ff: int = 0
-    carry: int = 0
-    lutram: int = 0
-    bram: int = 0
+    lut: int = 0  # Look-up tables of logic, without carry chains and memories.
+    ff: int = 0  # Flip-flops.
+    carry: int = 0  # Cells of carry chains.
+    lutram: int = 0  # Memory cells made of look-up tables.
+    bram: int = 0  # Block RAMs.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellPorts:
-    """A type of cell that serves to surround a circuit.
-
-    Attributes
-    ----------
-    type : str
-    ports : mapping of str to str
-        The names of the inputs in the netlist, by our names. Our names are ``clock`` and ``data``
-        of a flip-flop, ``0`` to ``3`` of a look-up table, and ``data`` of a buffer.
-    output : str
-    parameters : mapping of str to str
-    """
+    """A type of cell that serves to surround a circuit."""
 
     type: str
+    # The names of the inputs in the netlist, by our names. Our names are `clock` and `data` of a
+    # flip-flop, `0` to `3` of a look-up table, and `data` of a buffer.
     ports: Mapping[str, str]
     output: str
     parameters: Mapping[str, str] = field(default_factory=dict)
@@ -56,68 +34,38 @@ class CellPorts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pins:
-    """Cells to reduce the number of ports, for devices on which each port must be a pin.
+    """Cells to reduce the number of ports, for devices on which each port must be a pin."""
 
-    Attributes
-    ----------
-    lut : CellPorts
-        A look-up table whose output is the XOR of its four inputs.
-    input_buffer, output_buffer : CellPorts or None
-        Cells at pins; `None` if nextpnr adds them.
-    """
-
-    lut: CellPorts
+    lut: CellPorts  # A look-up table whose output is the XOR of its four inputs.
+    # Cells at pins; `None` if nextpnr adds them.
     input_buffer: CellPorts | None = None
     output_buffer: CellPorts | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placer:
-    """The call of nextpnr for a device, and the cells that surround a circuit.
+    """The call of nextpnr for a device, and the cells that surround a circuit."""
 
-    Attributes
-    ----------
-    package, program : str
-        Python package that has nextpnr, and its command on the PATH.
-    options : tuple of str
-    register : CellPorts
-        A flip-flop.
-    pins : Pins or None
-        Cells for pins; `None` if ports need no pins.
-    files : mapping of str to str
-        Files that the options name, with their text.
-    """
-
+    # Python package that has nextpnr, and its command on the PATH.
     package: str
     program: str
     options: tuple[str, ...]
-    register: CellPorts
-    pins: Pins | None = None
+    register: CellPorts  # A flip-flop.
+    pins: Pins | None = None  # Cells for pins; `None` if ports need no pins.
+    # Files that the options name, with their text.
     files: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Device:
-    """An FPGA.
+    """An FPGA."""
 
-    Attributes
-    ----------
-    name : str
-        Name for the option ``--device``.
-    title : str
-        Part and speed grade.
-    synthesis : str
-        Command of Yosys that maps a module ``top``.
-    cells : mapping of str to tuple of str
-        Types of cells that count, by the name of a figure of `Area`.
-    placer : Placer or None
-        `None` if nextpnr does not support the device. There is no clock rate then.
-    """
-
-    name: str
-    title: str
-    synthesis: str
+    name: str  # Name for the option `--device`.
+    title: str  # Part and speed grade.
+    synthesis: str  # Command of Yosys that maps a module `top`.
+    # Types of cells that count, by the name of a figure of `Area`.
     cells: Mapping[str, tuple[str, ...]]
+    # `None` if nextpnr does not support the device. There is no clock rate then.
     placer: Placer | None = None
 
     def area(self, counts: Mapping[str, int]) -> Area:

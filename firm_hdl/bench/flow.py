@@ -30,51 +30,26 @@ PREPARATIONS = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placed:
-    """The clock rate that one run of nextpnr reached.
-
-    Attributes
-    ----------
-    seed : int
-    mhz : float
-    path : CriticalPath
-        The path that limits the clock rate.
-    """
+    """The clock rate that one run of nextpnr reached."""
 
     seed: int
     mhz: float
-    path: CriticalPath
+    path: CriticalPath  # The path that limits the clock rate.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measured:
-    """The figures of a circuit.
-
-    Attributes
-    ----------
-    device : Device
-    area : Area
-        Area of the circuit alone.
-    port_registers : int
-        Number of flip-flops outside of the circuit's ports. They are not in `area`.
-    placed : tuple of Placed
-        One for each seed; none if the device has no nextpnr.
-    mapping : str
-        Commands of Yosys that mapped the circuit.
-    placement : str
-        Options of nextpnr, without the seed.
-    tools : mapping of str to str
-        Versions of the tools, by name.
-    problem : str
-        Why nextpnr gave no clock rate, for example because the circuit does not fit; else empty.
-    """
+    """The figures of a circuit."""
 
     device: Device
-    area: Area
+    area: Area  # Area of the circuit alone.
+    # Number of flip-flops outside of the circuit's ports. They are not in `area`.
     port_registers: int
-    placed: tuple[Placed, ...]
-    mapping: str
-    placement: str
-    tools: Mapping[str, str]
+    placed: tuple[Placed, ...]  # One for each seed; none if the device has no nextpnr.
+    mapping: str  # Commands of Yosys that mapped the circuit.
+    placement: str  # Options of nextpnr, without the seed.
+    tools: Mapping[str, str]  # Versions of the tools, by name.
+    # Why nextpnr gave no clock rate, for example because the circuit does not fit; else empty.
     problem: str = ""
 
     @property

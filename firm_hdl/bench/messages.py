@@ -14,22 +14,12 @@ __all__ = ["STATED", "Stated", "values"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stated:
-    """Parameters of the messages.
+    """Parameters of the messages."""
 
-    Attributes
-    ----------
-    count : int
-        Number of messages that are measured, after a first one that is not.
-    characters : (int, int)
-        Fewest and most characters of a string; both are limited by the string's bound.
-    elements : (int, int)
-        Fewest and most elements of a sequence, limited likewise.
-    seed : int
-    """
-
-    count: int = 16
+    count: int = 16  # Number of messages that are measured, after a first one that is not.
+    # Fewest and most characters of a string; both are limited by the string's bound.
     characters: tuple[int, int] = (4, 10)
-    elements: tuple[int, int] = (3, 8)
+    elements: tuple[int, int] = (3, 8)  # Fewest and most elements of a sequence, limited likewise.
     seed: int = 0
 
     def __str__(self) -> str:

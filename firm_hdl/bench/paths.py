@@ -18,25 +18,14 @@ MOST_NAMES = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CriticalPath:
-    """The slowest path between two registers.
+    """The slowest path between two registers."""
 
-    Attributes
-    ----------
-    ns : float
-        Delay of the path.
-    routing_ns : float
-        The part of the delay that is routing.
-    cells : int
-        Number of look-up tables, carry chains and the like on the path.
-    points : tuple of (float, str)
-        Signals on the path, each with its arrival time in ns. The first and the last are the
-        registers. Signals after ``&`` join the path there, directly or through other logic. Each
-        joining signal is named only once.
-    """
-
-    ns: float
-    routing_ns: float
-    cells: int
+    ns: float  # Delay of the path.
+    routing_ns: float  # The part of the delay that is routing.
+    cells: int  # Number of look-up tables, carry chains and the like on the path.
+    # Signals on the path, each with its arrival time in ns. The first and the last are the
+    # registers. Signals after `&` join the path there, directly or through other logic. Each
+    # joining signal is named only once.
     points: tuple[tuple[float, str], ...]
 
     def __str__(self) -> str:

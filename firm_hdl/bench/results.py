@@ -35,15 +35,7 @@ MOST_BYTES = 1 << 28
 
 @dataclass(frozen=True, slots=True, kw_only=True, order=True)
 class Converted:
-    """The identification of a converter.
-
-    Attributes
-    ----------
-    distro, type : str
-    wire : Wire
-    bus_bytes, max_message_bytes : int
-    direction : "deserializer" or "serializer"
-    """
+    """The identification of a converter."""
 
     distro: str
     type: str
@@ -58,22 +50,12 @@ class Converted:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """The figures of a converter.
-
-    Attributes
-    ----------
-    converter : Converted
-    cycles : Cycles or None
-    measured : Measured or None
-        `None` if no device was asked for.
-    problem : str
-        Why figures are missing; else empty.
-    """
+    """The figures of a converter."""
 
     converter: Converted
     cycles: Cycles | None = None
-    measured: Measured | None = None
-    problem: str = ""
+    measured: Measured | None = None  # `None` if no device was asked for.
+    problem: str = ""  # Why figures are missing; else empty.
 
     @property
     def mhz(self) -> float | None:

@@ -26,34 +26,18 @@ __all__ = ["BenchTask", "run_tasks"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BenchTask:
-    """One converter.
-
-    Attributes
-    ----------
-    converter : Converted
-    paths, bags, depends
-        As for `open_library`.
-    device : str or None
-        A name of `DEVICES`; `None`: cycles only.
-    seeds : tuple of int
-        Seeds of nextpnr.
-    mapping : str
-        Commands of Yosys before the mapping.
-    stated : Stated or None
-        Messages of the simulation; `None`: no simulation.
-    cache : str or None
-        Folder with figures that were computed before.
-    """
+    """One converter."""
 
     converter: Converted
+    # As for `open_library`.
     paths: tuple[str, ...] = ()
     bags: tuple[str, ...] = ()
     depends: tuple[str, ...] = ()
-    device: str | None = "ecp5"
-    seeds: tuple[int, ...] = (1, 2, 3)
-    mapping: str = ""
-    stated: Stated | None = STATED
-    cache: str | None = None
+    device: str | None = "ecp5"  # A name of `DEVICES`; `None`: cycles only.
+    seeds: tuple[int, ...] = (1, 2, 3)  # Seeds of nextpnr.
+    mapping: str = ""  # Commands of Yosys before the mapping.
+    stated: Stated | None = STATED  # Messages of the simulation; `None`: no simulation.
+    cache: str | None = None  # Folder with figures that were computed before.
 
 
 def run_tasks(tasks: Sequence[BenchTask], jobs: int | None = None) -> Iterator[Result]:

@@ -62,30 +62,15 @@ FLOATS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One message.
+    """One message."""
 
-    Attributes
-    ----------
-    what : str
-        A description of how the values were chosen.
-    value : object
-        The rosbags object.
-    packet : bytes
-        The packet that rosbags writes for `value`.
-    transfers : dict of path to list
-        The transfers of the message's leaves, from what rosbags reads in the packet.
-    given : bytes or None
-        The input of the deserializer, if it differs from `packet`.
-    status : str
-        The expected status of the deserializer.
-    """
-
-    what: str
-    value: object = field(repr=False)
-    packet: bytes
+    what: str  # A description of how the values were chosen.
+    value: object = field(repr=False)  # The rosbags object.
+    packet: bytes  # The packet that rosbags writes for `value`.
+    # The transfers of the message's leaves, from what rosbags reads in the packet.
     transfers: Transfers = field(repr=False)
-    given: bytes | None = None
-    status: DecodeStatus = "OK"
+    given: bytes | None = None  # The input of the deserializer, if it differs from `packet`.
+    status: DecodeStatus = "OK"  # The expected status of the deserializer.
 
     @property
     def sent(self) -> bytes:

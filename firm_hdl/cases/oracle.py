@@ -60,16 +60,10 @@ ROS1_TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 
 @dataclass(frozen=True, slots=True)
 class RosbagsOracle:
-    """rosbags' view of a set of types.
-
-    Attributes
-    ----------
-    dialect : "ros1" or "ros2"
-        The dialect of the types. In ROS 1, ``byte`` is signed, and times have ``secs`` and
-        ``nsecs``.
-    """
+    """rosbags' view of a set of types."""
 
     store: Typestore
+    # The dialect of the types. In ROS 1, `byte` is signed, and times have `secs` and `nsecs`.
     dialect: Literal["ros1", "ros2"]
 
     def names(self) -> list[str]:

@@ -35,17 +35,11 @@ _TIMES = dict.fromkeys(_BUILTIN, "int32 sec\nuint32 nanosec\n")
 
 @dataclass(frozen=True, slots=True)
 class Judge:
-    """An oracle that knows a type, and the oracle's name of the type.
-
-    Attributes
-    ----------
-    note : str
-        A remark about the oracle; empty in most cases.
-    """
+    """An oracle that knows a type, and the oracle's name of the type."""
 
     oracle: RosbagsOracle
     name: str
-    note: str = ""
+    note: str = ""  # A remark about the oracle; empty in most cases.
 
 
 def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = False) -> Judge:

@@ -33,22 +33,13 @@ __all__ = ["add_doctor", "documentation"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Item:
-    """Something that may be installed.
-
-    Attributes
-    ----------
-    version : str or None
-        `None`: it is not here.
-    enables : str
-    how : str
-        How to get it, if it is not here.
-    """
+    """Something that may be installed."""
 
     group: str
     name: str
-    version: str | None
+    version: str | None  # `None`: it is not here.
     enables: str
-    how: str = ""
+    how: str = ""  # How to get it, if it is not here.
 
 
 def add_doctor(command: argparse.ArgumentParser) -> None:

@@ -15,24 +15,14 @@ __all__ = ["COMMANDS", "Command"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Command:
-    """A command.
+    """A command."""
 
-    Attributes
-    ----------
-    help : str
-        Purpose of the command, in one line.
-    module : str
-        Name of the module of `firm_hdl.cli` with the function ``add_NAME``, which adds the
-        arguments and sets ``run``.
-    examples : tuple of str
-        Command lines that its help shows.
-    has_origins : bool
-        Whether the command takes ``--distro``, ``--path``, ``--bag`` and ``--depends``.
-    """
-
-    help: str
+    help: str  # Purpose of the command, in one line.
+    # Name of the module of `firm_hdl.cli` with the function `add_NAME`, which adds the arguments
+    # and sets `run`.
     module: str
-    examples: tuple[str, ...] = ()
+    examples: tuple[str, ...] = ()  # Command lines that its help shows.
+    # Whether the command takes `--distro`, `--path`, `--bag` and `--depends`.
     has_origins: bool = True
 
     def add(self, name: str, parser: argparse.ArgumentParser) -> None:

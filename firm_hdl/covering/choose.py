@@ -1,13 +1,12 @@
 """Choose a small set of types that has every feature of all types.
 
-Features of a type belong to five families: the productions of the grammar that its text uses, the
-constructs of its definition, of its layout and of its plan, and the branches that the generator
-takes for it (:mod:`firm_hdl.covering.branches`). A production is a rule of the grammar with the
-kinds of its children in a parse tree, such as ``field: INT_TYPE array NAME``. Several children of
-one kind in a row count as "one or more", so that the number of productions is finite. The set is
-chosen greedily: each step takes the type that adds most features per cost. The cost of the result
-is within a logarithmic factor of the smallest possible cost (Chvatal, 1979). The result is the same
-on every run.
+Features of a type belong to four families: the productions of the grammar that its text uses, and
+the constructs of its definition, of its layout and of its plan. A production is a rule of the
+grammar with the kinds of its children in a parse tree, such as ``field: INT_TYPE array NAME``.
+Several children of one kind in a row count as "one or more", so that there are finitely many. The
+set is chosen greedily: each step takes the type that adds most features per cost. The cost of the
+result is within a logarithmic factor of the smallest possible cost (Chvatal, 1979). The result is
+the same on every run.
 """
 
 from __future__ import annotations
@@ -19,7 +18,6 @@ from itertools import groupby
 
 from lark import Token, Tree
 
-from firm_hdl.covering.branches import branches
 from firm_hdl.frontend import Library
 from firm_hdl.frontend.idl.parse import idl_tree
 from firm_hdl.frontend.parse import line_trees
@@ -31,22 +29,16 @@ from firm_hdl.wire.layout import Gap, LengthField, LoopNode, Node, RunNode, Scal
 
 __all__ = ["FAMILIES", "all_features", "choose", "cost", "features", "productions"]
 
-FAMILIES = ("grammar", "definition", "layout", "plan", "branch")
+FAMILIES = ("grammar", "definition", "layout", "plan")
 """The families of features. The names that `all_features` returns begin with ``family: ``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chosen:
-    """A type of a covering set.
-
-    Attributes
-    ----------
-    adds : tuple of str
-        The features that no type chosen before this one has.
-    """
+    """A type of a covering set."""
 
     name: str
-    adds: tuple[str, ...]
+    adds: tuple[str, ...]  # The features that no type chosen before this one has.
 
 
 def features(message: Message, plan: Plan) -> frozenset[str]:
@@ -54,25 +46,18 @@ def features(message: Message, plan: Plan) -> frozenset[str]:
     return frozenset(_meaning(message)) | constructs(plan)
 
 
-def all_features(
-    library: Library, message: Message, plan: Plan, *, with_branches: bool = False
-) -> frozenset[str]:
+def all_features(library: Library, message: Message, plan: Plan) -> frozenset[str]:
     """Return the features of a type, of all families.
 
     Parameters
     ----------
     library : Library
         The library of the message; it has the language of each definition.
-    with_branches : bool
-        Include branches. This elaborates the type's converters, which takes some tenths of a
-        second.
     """
     found = {f"grammar: {name}" for name in _grammar(library, message)}
     found |= {f"definition: {name}" for name in _meaning(message)}
     found |= {f"layout: {name}" for name in _layout(message, plan.wire)}
     found |= {f"plan: {name}" for name in constructs(plan)}
-    if with_branches:
-        found |= {f"branch: {name}" for name in branches(message, plan)}
     return frozenset(found)
 
 

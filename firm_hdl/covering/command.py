@@ -33,11 +33,6 @@ def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="TYPE",
         help="types to choose from; default: all; with --path, all in those folders",
     )
-    parser.add_argument(
-        "--branches",
-        action="store_true",
-        help="also count the generator's branches as features (some tenths of a second per type)",
-    )
     do = parser.add_mutually_exclusive_group()
     do.add_argument("--out", metavar="FILE", help="write the names of the chosen types to a file")
     do.add_argument(
@@ -86,7 +81,7 @@ def run_cover(given: argparse.Namespace) -> int:
                 raise
             print(f"left out: {error}", file=sys.stderr)
             continue
-        types[message.name] = all_features(library, message, plan, with_branches=given.branches)
+        types[message.name] = all_features(library, message, plan)
         costs[message.name] = cost(plan)
         shapes.add(shape(plan))
     if not types:

@@ -34,57 +34,32 @@ class Cell:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flop:
-    """One bit of a register.
+    """One bit of a register."""
 
-    Attributes
-    ----------
-    data, clock : Bit
-        Next state, and clock.
-    rising : bool
-        Whether the register changes at the rising edge of the clock; otherwise at the falling edge.
-    init : str
-        Initial value: ``0``, ``1``, or ``x`` for any value.
-    reset : Bit or None
-        Asynchronous reset; `None` if there is none.
-    reset_level : bool
-        Level at which the reset is active.
-    reset_value : str
-        Value after a reset: ``0`` or ``1``.
-    """
-
+    # Next state, and clock.
     data: Bit
     clock: Bit
+    # Whether the register changes at the rising edge of the clock; otherwise at the falling edge.
     rising: bool
-    init: str
-    reset: Bit | None = None
-    reset_level: bool = True
-    reset_value: str = "0"
+    init: str  # Initial value: `0`, `1`, or `x` for any value.
+    reset: Bit | None = None  # Asynchronous reset; `None` if there is none.
+    reset_level: bool = True  # Level at which the reset is active.
+    reset_value: str = "0"  # Value after a reset: `0` or `1`.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Circuit:
-    """A flat netlist; its registers are kept apart from the combinational cells.
+    """A flat netlist; its registers are kept apart from the combinational cells."""
 
-    Attributes
-    ----------
-    inputs, outputs : mapping of str to Bits
-        Ports by name.
-    signals : mapping of tuple to Bits
-        Signals by path: the names of the enclosing instances, and the signal's own name. On the
-        RTLIL side, registers only.
-    cells : list of Cell
-    flops : mapping of int to Flop
-        Registers by the net that they drive.
-    driven : frozenset of int
-        All nets that have a driver.
-    """
-
+    # Ports by name.
     inputs: Mapping[str, Bits]
     outputs: Mapping[str, Bits]
+    # Signals by path: the names of the enclosing instances, and the signal's own name. On the RTLIL
+    # side, registers only.
     signals: Mapping[tuple[str, ...], Bits]
     cells: list[Cell]
-    flops: Mapping[int, Flop]
-    driven: frozenset[int] = field(init=False)
+    flops: Mapping[int, Flop]  # Registers by the net that they drive.
+    driven: frozenset[int] = field(init=False)  # All nets that have a driver.
 
     def __post_init__(self) -> None:
         seen: set[int] = set()

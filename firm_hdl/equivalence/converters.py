@@ -40,25 +40,19 @@ class ProofTask:
     ----------
     distro, paths, bags, depends
         As for `open_library`.
-    name : str
-        Name of the type.
-    direction : "deserializer" or "serializer"
-    wire, bus_bytes, max_message_bytes
-        As for the converters.
-    timeout : float
-        Seconds for each solver.
     """
 
     distro: str
-    name: str
+    name: str  # Name of the type.
     direction: Direction
     paths: tuple[str, ...] = ()
     bags: tuple[str, ...] = ()
     depends: tuple[str, ...] = ()
+    # As for the converters.
     wire: Wire | None = None
     bus_bytes: int = 8
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
-    timeout: float = DEFAULT_TIMEOUT
+    timeout: float = DEFAULT_TIMEOUT  # Seconds for each solver.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -32,38 +32,24 @@ class Net:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instance:
-    """A gate (`kind` starts with ``$``) or an instance of a module.
-
-    Attributes
-    ----------
-    inputs : mapping of str to Net
-        Inputs in order, by name; by position if the gate has a variable number of inputs.
-    parameters : tuple of int
-        Parameters in order.
-    """
+    """A gate (`kind` starts with ``$``) or an instance of a module."""
 
     name: str
     kind: str
-    parameters: tuple[int, ...]
+    parameters: tuple[int, ...]  # Parameters in order.
+    # Inputs in order, by name; by position if the gate has a variable number of inputs.
     inputs: Mapping[str, Net]
     outputs: Mapping[str, Net]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Module:
-    """A module.
-
-    Attributes
-    ----------
-    ports : mapping of str to int or None
-        Widths of all ports; `None` is any width.
-    own : Instance or None
-        The module's ports as an instance inside the module. The inputs of the instance drive the
-        module's output ports, and the module's input ports drive the outputs of the instance.
-    """
+    """A module."""
 
     name: str
-    ports: Mapping[str, int | None]
+    ports: Mapping[str, int | None]  # Widths of all ports; `None` is any width.
+    # The module's ports as an instance inside the module. The inputs of the instance drive the
+    # module's output ports, and the module's input ports drive the outputs of the instance.
     own: Instance | None
     instances: tuple[Instance, ...]
 

@@ -38,18 +38,11 @@ class Names(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Match:
-    """The matching signals and memories; paths are without the outermost module.
+    """The matching signals and memories; paths are without the outermost module."""
 
-    Attributes
-    ----------
-    signals : mapping of tuple to tuple
-        Paths of signals and of words of memories in VHDL by paths in the flattened RTLIL.
-    memories : mapping of tuple to int
-        Number of words by path of the memory in VHDL.
-    """
-
+    # Paths of signals and of words of memories in VHDL by paths in the flattened RTLIL.
     signals: Mapping[_Path, _Path]
-    memories: Mapping[_Path, int]
+    memories: Mapping[_Path, int]  # Number of words by path of the memory in VHDL.
 
 
 @dataclass(slots=True)

@@ -44,23 +44,17 @@ class MemoryCircuit:
         Bits per word, and number of words.
     fresh : callable
         Makes new nets.
-
-    Attributes
-    ----------
-    words : list of Bits
-        The words; constants if the memory has no write port.
-    reads : list of Bits
-        The data of each read port that has a register.
-    cells, flops
-        As in `Circuit`.
     """
 
     name: str
     width: int
     depth: int
     fresh: _Fresh
+    # The words; constants if the memory has no write port.
     words: list[Bits] = field(default_factory=list)
+    # The data of each read port that has a register.
     reads: list[Bits] = field(default_factory=list)
+    # As in `Circuit`.
     cells: list[Cell] = field(default_factory=list)
     flops: dict[int, Flop] = field(default_factory=dict)
 

@@ -21,46 +21,27 @@ Path = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """Two values that must be equal.
+    """Two values that must be equal."""
 
-    Attributes
-    ----------
-    what : str
-        Description, such as ``output m_axis_tvalid`` or ``next state of core.step``.
-    amaranth, vhdl : Bits
-        The values on the two sides.
-    """
-
-    what: str
+    what: str  # Description, such as `output m_axis_tvalid` or `next state of core.step`.
+    # The values on the two sides.
     amaranth: Bits
     vhdl: Bits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Miter:
-    """A combined circuit.
+    """A combined circuit."""
 
-    Attributes
-    ----------
-    differences : tuple of str
-        Differences that need no solver, such as a missing register or another initial value.
-    claims : tuple of Claim
-        The claims to be proved.
-    inputs : mapping of str to Bits
-        Inputs and registers by name, and ``anything``: nets that neither side drives.
-    cells : list of Cell
-    unmatched : tuple of str
-        Registers that only one side has. They may have any value at any time.
-    registers : int
-        Number of register bits that both sides have.
-    """
-
+    # Differences that need no solver, such as a missing register or another initial value.
     differences: tuple[str, ...]
-    claims: tuple[Claim, ...]
+    claims: tuple[Claim, ...]  # The claims to be proved.
+    # Inputs and registers by name, and `anything`: nets that neither side drives.
     inputs: Mapping[str, Bits]
     cells: list[Cell]
+    # Registers that only one side has. They may have any value at any time.
     unmatched: tuple[str, ...]
-    registers: int
+    registers: int  # Number of register bits that both sides have.
 
     def netlist(self, *, values: bool) -> dict[str, Any]:
         """Return the circuit in the JSON format of Yosys.

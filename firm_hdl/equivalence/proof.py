@@ -33,35 +33,20 @@ _RESULTS: Mapping[bool | None, Result] = {True: "equal", False: "unequal", None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:
-    """The result of an attempt to prove the VHDL of a design equal to its RTLIL.
+    """The result of an attempt to prove the VHDL of a design equal to its RTLIL."""
 
-    Attributes
-    ----------
-    result : "equal", "unequal" or "undecided"
-        Undecided: the solvers gave up; the circuits may be equal or not.
-    differences : tuple of str
-        The differences, if `result` is unequal; the open claims, if it is undecided.
-    counterexample : mapping of str to int
-        Inputs and registers for which the sides differ; those that are not named are 0. Empty if no
-        solver was needed, for example if an initial value differs. The registers may have values
-        that they never reach. If so, the circuits may be equivalent, but this is not proved.
-    unmatched : tuple of str
-        Registers that only one side has. If their values are never used, the proof can succeed.
-    registers : int
-        Number of register bits that both sides have.
-    claims : int
-        Number of outputs, next states and so on that a solver compared.
-    seconds : float
-        Duration of the attempt.
-    """
-
-    result: Result
+    result: Result  # Undecided: the solvers gave up; the circuits may be equal or not.
+    # The differences, if `result` is unequal; the open claims, if it is undecided.
     differences: tuple[str, ...] = ()
+    # Inputs and registers for which the sides differ; those that are not named are 0. Empty if no
+    # solver was needed, for example if an initial value differs. The registers may have values that
+    # they never reach. If so, the circuits may be equivalent, but this is not proved.
     counterexample: Mapping[str, int] = field(default_factory=dict)
+    # Registers that only one side has. If their values are never used, the proof can succeed.
     unmatched: tuple[str, ...] = ()
-    registers: int
-    claims: int
-    seconds: float
+    registers: int  # Number of register bits that both sides have.
+    claims: int  # Number of outputs, next states and so on that a solver compared.
+    seconds: float  # Duration of the attempt.
 
     def __str__(self) -> str:
         if self.result == "equal":

@@ -31,36 +31,19 @@ _FEW = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """Inputs and registers for which the two sides differ.
+    """Inputs and registers for which the two sides differ."""
 
-    Attributes
-    ----------
-    where : tuple of str
-        Claims that do not hold, with the values of both sides.
-    inputs : mapping of str to int
-        Inputs and registers that are not 0.
-    """
-
-    where: tuple[str, ...]
-    inputs: Mapping[str, int]
+    where: tuple[str, ...]  # Claims that do not hold, with the values of both sides.
+    inputs: Mapping[str, int]  # Inputs and registers that are not 0.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """The answer of the solvers.
+    """The answer of the solvers."""
 
-    Attributes
-    ----------
-    equal : bool or None
-        `None`: the solvers gave up.
-    difference : Difference or None
-    open : tuple of str
-        Claims that are undecided, if `equal` is `None`.
-    """
-
-    equal: bool | None
+    equal: bool | None  # `None`: the solvers gave up.
     difference: Difference | None = None
-    open: tuple[str, ...] = ()
+    open: tuple[str, ...] = ()  # Claims that are undecided, if `equal` is `None`.
 
 
 def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Answer:

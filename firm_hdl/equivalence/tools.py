@@ -24,14 +24,9 @@ NEEDS_GB = 9.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tools:
-    """The commands of the tools.
+    """The commands of the tools."""
 
-    Attributes
-    ----------
-    ghdl, yosys : tuple of str
-        First words of a command line.
-    """
-
+    # First words of a command line.
     ghdl: tuple[str, ...]
     yosys: tuple[str, ...]
 

@@ -115,25 +115,16 @@ def _called(work: Callable[..., R], arguments: tuple[Any, ...]) -> R | Exception
 
 @dataclass(frozen=True, slots=True)
 class _PoolSource:
-    """Opens pools of workers, on this machine or on a cluster.
+    """Opens pools of workers, on this machine or on a cluster."""
 
-    Attributes
-    ----------
-    open : callable
-        Returns a pool with a number of workers, as a context manager.
-    broken : exception type
-        Exception of a task whose worker died.
-    workers, window : int
-        Number of workers, and largest number of submitted tasks.
-    is_busy : callable
-        Return whether a worker is running a task. It is needed for clusters: a cluster does not
-        report that it has lost all workers, whereas a pool of this machine reports a dead process.
-    """
-
+    # Returns a pool with a number of workers, as a context manager.
     open: Callable[[int], AbstractContextManager[Executor]]
-    broken: type[BaseException]
+    broken: type[BaseException]  # Exception of a task whose worker died.
+    # Number of workers, and largest number of submitted tasks.
     workers: int
     window: int
+    # Return whether a worker is running a task. It is needed for clusters: a cluster does not
+    # report that it has lost all workers, whereas a pool of this machine reports a dead process.
     is_busy: Callable[[], bool] = lambda: True
 
 

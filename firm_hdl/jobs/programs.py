@@ -56,19 +56,10 @@ class ProgramMissingError(UserError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Program:
-    """An installed program.
+    """An installed program."""
 
-    Attributes
-    ----------
-    title : str
-        Name in messages.
-    command : tuple of str
-        First words of a command line.
-    version : str
-    """
-
-    title: str
-    command: tuple[str, ...]
+    title: str  # Name in messages.
+    command: tuple[str, ...]  # First words of a command line.
     version: str
 
 

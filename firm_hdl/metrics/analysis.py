@@ -105,60 +105,36 @@ _RESIDUES = range(rs.MODULUS)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Metrics:
-    """Figures of a message type on a wire.
-
-    Attributes
-    ----------
-    name : str
-    wire : Wire
-    depth : int
-        Levels of messages; 1 if the type has no message fields.
-    types : int
-        Different message types in it, itself included.
-    constants : int
-        Constants of the type itself.
-    fields : int
-        Fields of the type itself.
-    leaves : int
-        Fields of all levels that are not messages. An array or a sequence counts as one element,
-        and so does a message without fields.
-    fixed_leaves, dynamic_leaves : int
-        Leaves that have the same number of bytes in each message, and the others: strings,
-        sequences, and all leaves in sequences of messages.
-    min_bytes : int or None
-        Size of the shortest message, encapsulation header included, as encoders write it.
-    max_bytes : int or None
-        Size of the longest message; `None` if sizes are not limited.
-    aligned, padded, shifting : int or None
-        Number of values on the wire (lengths of sequences and strings included) by their padding:
-        those that never have padding before them, those that have the same padding in each
-        message, and those whose padding differs.
-    features : tuple of str
-        Keys of `FEATURES` that occur in the type or in any message in it.
-    definition_bytes : int
-        Size of the text that defines the type; that of the whole file for a message of a service or
-        an action.
-    unsized : str
-        Why sizes and alignment are `None`: the type has a field without a wire format
-        (:func:`firm_hdl.wire.refusals`). Empty for all other types.
-    """
+    """Figures of a message type on a wire."""
 
     name: str
     wire: Wire
-    depth: int
-    types: int
-    constants: int
-    fields: int
+    depth: int  # Levels of messages; 1 if the type has no message fields.
+    types: int  # Different message types in it, itself included.
+    constants: int  # Constants of the type itself.
+    fields: int  # Fields of the type itself.
+    # Fields of all levels that are not messages. An array or a sequence counts as one element, and
+    # so does a message without fields.
     leaves: int
+    # Leaves that have the same number of bytes in each message, and the others: strings, sequences,
+    # and all leaves in sequences of messages.
     fixed_leaves: int
     dynamic_leaves: int
+    # Size of the shortest message, encapsulation header included, as encoders write it.
     min_bytes: int | None
-    max_bytes: int | None
+    max_bytes: int | None  # Size of the longest message; `None` if sizes are not limited.
+    # Number of values on the wire (lengths of sequences and strings included) by their padding:
+    # those that never have padding before them, those that have the same padding in each message,
+    # and those whose padding differs.
     aligned: int | None
     padded: int | None
     shifting: int | None
-    features: tuple[str, ...]
+    features: tuple[str, ...]  # Keys of `FEATURES` that occur in the type or in any message in it.
+    # Size of the text that defines the type; that of the whole file for a message of a service or
+    # an action.
     definition_bytes: int
+    # Why sizes and alignment are `None`: the type has a field without a wire format
+    # (:func:`firm_hdl.wire.refusals`). Empty for all other types.
     unsized: str
 
 
@@ -169,20 +145,11 @@ def metrics_of(message: Message, wire: Wire | None = None) -> Metrics:
 
 @dataclass(slots=True, kw_only=True)
 class _Type:
-    """Attributes of a type, for each residue of the offset where it starts.
+    """Attributes of a type, for each residue of the offset where it starts."""
 
-    Attributes
-    ----------
-    min_bytes : list of int
-        Bytes of the shortest value, by the residue where it starts.
-    max_bytes : list of int or None
-        Bytes of the longest value, likewise.
-    fixed, dynamic : int
-        Number of leaves.
-    """
-
-    min_bytes: list[int]
-    max_bytes: list[int] | None
+    min_bytes: list[int]  # Bytes of the shortest value, by the residue where it starts.
+    max_bytes: list[int] | None  # Bytes of the longest value, likewise.
+    # Number of leaves.
     fixed: int
     dynamic: int
     features: frozenset[str]

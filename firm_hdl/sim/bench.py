@@ -87,26 +87,15 @@ class RunOptions:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """One run of a bench.
+    """One run of a bench."""
 
-    Attributes
-    ----------
-    sources : dict of str to iterable of int
-        Payloads to send, as bits, by the name of the stream.
-    takes : dict of str to callable
-        Functions by the name of a stream. They are called at each transfer of the stream, with the
-        cycle and the payload's bits.
-    finished : callable
-        Returns whether everything expected has come; called after each cycle with a transfer.
-    outstanding : callable
-        Returns a text of what has not come yet, for the error.
-    options : RunOptions
-    """
-
-    sources: dict[str, Iterable[int]]
+    sources: dict[str, Iterable[int]]  # Payloads to send, as bits, by the name of the stream.
+    # Functions by the name of a stream. They are called at each transfer of the stream, with the
+    # cycle and the payload's bits.
     takes: dict[str, Callable[[int, int], None]]
+    # Returns whether everything expected has come; called after each cycle with a transfer.
     finished: Callable[[], bool]
-    outstanding: Callable[[], str]
+    outstanding: Callable[[], str]  # Returns a text of what has not come yet, for the error.
     options: RunOptions = RunOptions()
 
 
@@ -116,28 +105,19 @@ class DeadlineError(AssertionError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ports:
-    """The streams of a design that a bench drives and observes. All names differ.
+    """The streams of a design that a bench drives and observes. All names differ."""
 
-    Attributes
-    ----------
-    sources : mapping of str to stream.Interface
-        Streams that the bench drives.
-    sinks : mapping of str to stream.Interface
-        Streams that the bench receives from. Always ready unless stalled.
-    taps : mapping of str to stream.Interface
-        Streams inside the design that the bench only watches.
-    gates : Signal or None
-        A bit for each tap, in order: the design connects the stream through while the bit is high.
-        While a transfer of the tap waits, the bench keeps the bit high, because `valid` must not
-        fall before the transfer.
-    payloads : mapping of str to Value
-        Values to observe in place of the payload of a sink or tap.
-    """
-
+    # Streams that the bench drives.
     sources: Mapping[str, stream.Interface] = field(default_factory=dict)
+    # Streams that the bench receives from. Always ready unless stalled.
     sinks: Mapping[str, stream.Interface] = field(default_factory=dict)
+    # Streams inside the design that the bench only watches.
     taps: Mapping[str, stream.Interface] = field(default_factory=dict)
+    # A bit for each tap, in order: the design connects the stream through while the bit is high.
+    # While a transfer of the tap waits, the bench keeps the bit high, because `valid` must not fall
+    # before the transfer.
     gates: Signal | None = None
+    # Values to observe in place of the payload of a sink or tap.
     payloads: Mapping[str, Value] = field(default_factory=dict)
 
 

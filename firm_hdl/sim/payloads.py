@@ -115,19 +115,11 @@ def packet_beats(
 
 @dataclass(slots=True)
 class PacketCollector:
-    """Join beats to packets.
-
-    Attributes
-    ----------
-    packets : list of bytes
-        Complete packets.
-    beats : int
-        Beats taken so far.
-    """
+    """Join beats to packets."""
 
     bus_bytes: int
-    packets: list[bytes] = field(default_factory=list)
-    beats: int = 0
+    packets: list[bytes] = field(default_factory=list)  # Complete packets.
+    beats: int = 0  # Beats taken so far.
     _parts: list[bytes] = field(default_factory=list)
 
     def take(self, bits: int) -> bool:

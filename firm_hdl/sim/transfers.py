@@ -36,35 +36,21 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferTable:
-    """The transfers that a message requires, and those that each length in it adds.
+    """The transfers that a message requires, and those that each length in it adds."""
 
-    Attributes
-    ----------
-    start : tuple of (leaf, count)
-        Transfers that every message has.
-    below : dict of int to tuple of (leaf, count)
-        For the leaf of a length: the transfers for each element that the length counts.
-    items : dict of int to (leaf, lanes)
-        For the leaf of a length: the leaf of the items that it counts, and the items per transfer.
-    """
-
-    start: tuple[tuple[int, int], ...]
+    start: tuple[tuple[int, int], ...]  # Transfers that every message has.
+    # For the leaf of a length: the transfers for each element that the length counts.
     below: dict[int, tuple[tuple[int, int], ...]]
+    # For the leaf of a length: the leaf of the items that it counts, and the items per transfer.
     items: dict[int, tuple[int, int]]
 
 
 @dataclass(slots=True)
 class PendingTransfers:
-    """The transfers that one message still requires.
-
-    Attributes
-    ----------
-    table : TransferTable
-    counts : dict of int to int
-        Transfers known to follow, by leaf; leaves without any are absent.
-    """
+    """The transfers that one message still requires."""
 
     table: TransferTable
+    # Transfers known to follow, by leaf; leaves without any are absent.
     counts: dict[int, int] = field(init=False)
 
     def __post_init__(self) -> None:

@@ -53,7 +53,7 @@ _USUAL_SYSTEMS = ("ts3",)
 
 # Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
-    *("bag", "bus_bytes", "executor", "golden", "mutations", "oracle", "reference"),
+    *("bag", "bus_bytes", "executor", "golden", "oracle", "reference"),
     *("share_circuits", "simulator", "systems", "vcd"),
     *("board", "node", "write_node"),
 )
@@ -117,24 +117,14 @@ def _facts(results: str) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Workload:
-    """A request and its types.
+    """A request and its types."""
 
-    Attributes
-    ----------
-    request : Request
-        Its `paths` are the folders of the workspace if the types were found there.
-    tasks : sequence of TypeUnderTest
-        The types that are tested; empty if only TS1 runs, which looks up the types itself.
-    problems : mapping of str to Diagnostic
-        Errors by their texts. Types without errors are tested nevertheless.
-    board : Description or None
-        The node of the board, if there is one.
-    """
-
-    request: Request
+    request: Request  # Its `paths` are the folders of the workspace if the types were found there.
+    # The types that are tested; empty if only TS1 runs, which looks up the types itself.
     tasks: Sequence[TypeUnderTest]
+    # Errors by their texts. Types without errors are tested nevertheless.
     problems: Mapping[str, Diagnostic]
-    board: Description | None = None
+    board: Description | None = None  # The node of the board, if there is one.
 
 
 def resolve(request: Request) -> Workload:
@@ -326,13 +316,6 @@ def _add_ts1(group: argparse._ArgumentGroup) -> None:
         default=[],
         choices=ORACLE_NAMES,
         help="oracle to use; repeatable; default: all installed",
-    )
-    group.add_argument(
-        "--mutations",
-        type=positive,
-        default=0,
-        metavar="N",
-        help="judge N mutated definitions instead of the originals",
     )
 
 

@@ -86,7 +86,7 @@ def failure(found: Sequence[Record], request: Request, refused: int = 0) -> str:
     Parameters
     ----------
     request : Request
-        If the user named the types, every test has to be judged, except mutations; otherwise, one.
+        If the user named the types, every test has to be judged; otherwise, one.
     refused : int
         Definitions with errors.
     """
@@ -102,12 +102,8 @@ def failure(found: Sequence[Record], request: Request, refused: int = 0) -> str:
 
 def _is_unjudged(found: Sequence[Record], request: Request) -> bool:
     """Whether a run fails because of what was not judged."""
-    silent = [each for each in found if isinstance(each.verdict, NotJudged)]
-    if len(silent) == len(found):
-        return True
-    # The user named the definitions that mutations are made of.
-    named = [each for each in silent if not (request.mutations and each.test.system == "ts1")]
-    return request.is_named and bool(named)
+    silent = sum(isinstance(each.verdict, NotJudged) for each in found)
+    return silent == len(found) or (request.is_named and silent > 0)
 
 
 def concluded(found: Sequence[Record], request: Request) -> list[str]:

@@ -56,7 +56,7 @@ DEFAULTS = {
         [],
         {"types": [], "all": False, "distro": None, "path": [], "depends": [], "bag": []}
         | {"systems": None, "wire": None, "bus_bytes": None, "seed": 0, "jobs": None}
-        | {"oracle": [], "mutations": 0, "golden": None, "simulator": "python", "cases": None}
+        | {"oracle": [], "golden": None, "simulator": "python", "cases": None}
         | {"stalls": True, "broken": True, "share_circuits": None, "vcd": None}
         | {"max_message_bytes": None, "sut": [], "reference": [], "results": None}
         | {"report": None, "executor": "processes", "board": None, "node": None}
@@ -97,7 +97,7 @@ DEFAULTS = {
     ),
     "cover": (
         [],
-        {**ORIGINS, **PLAN, "types": [], "branches": False, "out": None, "check": None},
+        {**ORIGINS, **PLAN, "types": [], "out": None, "check": None},
     ),
 }
 INTERNAL = ("command", "run", "refuse", "usage_error", "default_of", "version")
@@ -281,7 +281,6 @@ def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
         (["build", "a/B", "--force"], "force", True),
         (["build", "a/B", "--with", "tools,documents"], "extras", {"tools", "documents"}),
         (["build", "a/B", "--with", "all"], "extras", {*EXTRAS}),
-        (["cover", "--branches"], "branches", True),
         (["metrics", "--format", "json"], "format", "json"),
         (["metrics", "--format", "csv"], "format", "csv"),
         (["report", "a", "b", "--format", "md"], "results", ["a", "b"]),
@@ -291,7 +290,6 @@ def test_messages_of_a_recording_have_a_limit_of_their_own(capsys):
         (["verify", "--no-share-circuits"], "share_circuits", False),
         (["verify", "--bus-bytes", "4", "--bus-bytes", "8"], "bus_bytes", [4, 8]),
         (["verify", "--distro", "noetic", "--distro", "foxy"], "distro", ["noetic", "foxy"]),
-        (["verify", "--mutations", "7"], "mutations", 7),
         (["golden", "add", "plans", "a/B", "c/D"], "types", ["a/B", "c/D"]),
         (["plan", "a/B", "--max-message-bytes", "0x10"], "max_message_bytes", 16),
     ],

@@ -17,16 +17,8 @@ def test_types_and_what_they_add_are_printed(capsys):
     out, err = capsys.readouterr()
     assert [line.partition(":")[0] for line in out.splitlines()] == [NAMES[0], NAMES[2]]
     assert "definition: field bool" in out and "grammar: ros2 field: BOOL_TYPE FIELD_NAME" in out
-    assert "branch: " not in out
     assert err.startswith("2 of 3 types have 100 % of the ")
     assert err.endswith("; 2 different circuits\n")
-
-
-def test_branches_are_counted_if_asked_for(capsys):
-    assert main(["cover", "--branches", "std_msgs/msg/Bool"]) == 0
-    out, err = capsys.readouterr()
-    assert "branch: plan/build.py " in out and "branch: gateware/parse/sequencer.py " in out
-    assert ", branch " in err
 
 
 def test_written_file_passes_its_check(tmp_path, capsys):

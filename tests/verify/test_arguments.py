@@ -40,7 +40,7 @@ def test_a_call_without_options_tests_all_types_as_usual(request_of):
 def test_every_option_of_a_run_of_own_types_reaches_the_request(request_of):
     words = f"p/A q/B --path one --path two --depends three {SHARED} {CASES} --wire ros1 "
     words += "--distro noetic --distro lyrical --systems ts2,ts1,ts2 --bus-bytes 16 --bus-bytes 2 "
-    words += "--bus-bytes 16 --oracle genmsg --oracle ros2 --mutations 5 --golden plans "
+    words += "--bus-bytes 16 --oracle genmsg --oracle ros2 --golden plans "
     words += "--share-circuits --reference genpy --reference fastcdr --reference genpy"
     assert request_of(*words.split()) == Request(
         types=("p/A", "q/B"),
@@ -54,7 +54,6 @@ def test_every_option_of_a_run_of_own_types_reaches_the_request(request_of):
         jobs=3,
         executor="dask://host:1",
         oracles=("genmsg", "ros2"),
-        mutations=5,
         golden="plans",
         simulator="iverilog",
         most_cases=9,
@@ -150,7 +149,6 @@ OTHERS = {
     "bus-bytes": "4",
     "executor": "dask://host:1",
     "golden": "x",
-    "mutations": "1",
     "oracle": "genmsg",
     "node": "x",
     "reference": "none",

@@ -15,11 +15,12 @@ from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.verify.results.file import ResultsWriter, read_results
 from firm_hdl.verify.results.records import Record, from_json, to_json
-from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.system import run_shares, shares_of
+from firm_hdl.verify.results.verdict import NotJudged, Passed
+from firm_hdl.verify.systems.system import run_tests
 from firm_hdl.verify.ts1 import system as ts1_system
 from tests.frontend.workspace import make_files
 from tests.verify.judged import assert_known, assert_passed, without_times
+from tests.verify.report.samples import a_test
 
 BOOL, CHAR = "std_msgs/msg/Bool", "std_msgs/msg/Char"
 # rosbags is always installed.
@@ -168,22 +169,22 @@ def test_system_that_was_killed_goes_on_and_ends_the_same(tmp_path, system):
     assert set(written(killed).values()) == {1}, "something ran twice"
 
 
-def halve(divisor, share):
-    if 13 in share:
+def passed_unless_13(context, test):
+    if test.type == "p/msg/T13":
         os.kill(os.getpid(), signal.SIGKILL)
-    return [number // divisor for number in share]
+    return Record(test=test, verdict=Passed(context))
 
 
-def test_share_that_ends_its_process_blames_one_item():
-    shares = shares_of(range(40), 8, parts=5)
-    assert [len(share) for share in shares] == [8] * 5
-    found = {}
-    for share, result in run_shares(halve, 2, shares, jobs=2):
-        if isinstance(result, Exception):
-            assert share == (13,) and "died" in str(result)
-        else:
-            found.update(zip(share, result, strict=True))
-    assert found == {number: number // 2 for number in range(40) if number != 13}
+def test_share_that_ends_its_process_blames_one_test():
+    tests = [a_test(f"p/msg/T{number}") for number in range(140)]
+    shares = list(run_tests(passed_unless_13, 7, tests, lambda test: test.type, most=8, jobs=2))
+    # Two in each, but those that ran again one by one.
+    assert sorted(map(len, shares)) == [1, 1, *[2] * 69]
+    records = [record for share in shares for record in share]
+    assert sorted(record.command for record in records) == sorted(test.type for test in tests)
+    failed = [record for record in records if record.verdict != Passed(7)]
+    assert [record.test.type for record in failed] == ["p/msg/T13"]
+    assert "died" in failed[0].failures[0]
 
 
 def test_definition_that_ends_our_process_is_the_only_one_that_fails(tmp_path, monkeypatch):

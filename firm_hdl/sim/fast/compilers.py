@@ -258,24 +258,13 @@ def _environment() -> dict[str, str]:
 
 @dataclass(slots=True)
 class VerilatedSource:
-    """The source of a program that simulates a design, before Verilator has run.
+    """The source of a program that simulates a design, before Verilator has run."""
 
-    Attributes
-    ----------
-    verilog : str
-        It has no paths, so that it is the same for the same design.
-    main : str
-        C++ with the table of the ports.
-    modules : mapping of str to str
-        More Verilog by file name: modules that the design has instances of.
-    traced : "", "vcd" or "fst"
-        The format of the waveform that the program writes.
-    """
-
-    verilog: str
-    main: str
+    verilog: str  # It has no paths, so that it is the same for the same design.
+    main: str  # C++ with the table of the ports.
+    # More Verilog by file name: modules that the design has instances of.
     modules: Mapping[str, str] = field(default_factory=dict)
-    traced: str = ""
+    traced: str = ""  # The format of the waveform that the program writes.
 
 
 @search_put_off()

@@ -71,16 +71,10 @@ def _beats(packet: bytes, bus_bytes: int, counts: bool) -> bytes:
 
 @dataclass(slots=True)
 class PacketJoiner:
-    """Join the transfers of a packet stream to packets.
-
-    Attributes
-    ----------
-    bus_bytes : int
-    partial : bytearray
-        Bytes of the packet that has begun and not yet ended.
-    """
+    """Join the transfers of a packet stream to packets."""
 
     bus_bytes: int
+    # Bytes of the packet that has begun and not yet ended.
     partial: bytearray = field(default_factory=bytearray)
 
     def add(self, records: bytes) -> list[Packet]:

@@ -21,25 +21,13 @@ def bytes_of(bits: int) -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlainPort:
-    """A member of a component that is not part of a stream.
+    """A member of a component that is not part of a stream."""
 
-    Attributes
-    ----------
-    name : str
-        Names of the members on the way to it, joined with dots.
-    is_input : bool
-    shape : ShapeLike
-    value : Value
-        The component's own member, as bits.
-    init : object or None
-        Initial value of an input.
-    """
-
-    name: str
+    name: str  # Names of the members on the way to it, joined with dots.
     is_input: bool
     shape: Any
-    value: Value
-    init: object = None
+    value: Value  # The component's own member, as bits.
+    init: object = None  # Initial value of an input.
 
     @property
     def bytes(self) -> int:
@@ -63,27 +51,13 @@ class PlainPort:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamPort:
-    """A stream of a component.
+    """A stream of a component."""
 
-    Attributes
-    ----------
-    number : int
-        Its place among the streams.
-    name : str
-        Names of the members on the way to it, joined with dots.
-    is_input : bool
-        Whether the component receives on it.
-    port : stream.Interface
-        The component's own member.
-    bus_bytes : int
-        Bytes per beat of a packet stream; 0 for any other stream.
-    """
-
-    number: int
-    name: str
-    is_input: bool
-    port: stream.Interface
-    bus_bytes: int
+    number: int  # Its place among the streams.
+    name: str  # Names of the members on the way to it, joined with dots.
+    is_input: bool  # Whether the component receives on it.
+    port: stream.Interface  # The component's own member.
+    bus_bytes: int  # Bytes per beat of a packet stream; 0 for any other stream.
 
     @property
     def width(self) -> int:

@@ -44,26 +44,13 @@ MOST = (1 << 32) - 1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Run:
-    """Packets for a board, and what has to come of them.
+    """Packets for a board, and what has to come of them."""
 
-    Attributes
-    ----------
-    where : str
-        Name of the run in failures.
-    packets : list of bytes
-    names : list of str
-        What each packet is.
-    statuses : list of str
-        ``OK``, or why the gate has to drop a packet.
-    answers : list of bytes or None
-        What has to come back for each packet; `None`: nothing.
-    """
-
-    where: str
+    where: str  # Name of the run in failures.
     packets: list[bytes]
-    names: list[str]
-    statuses: list[str]
-    answers: list[bytes | None]
+    names: list[str]  # What each packet is.
+    statuses: list[str]  # `OK`, or why the gate has to drop a packet.
+    answers: list[bytes | None]  # What has to come back for each packet; `None`: nothing.
 
     @property
     def expected(self) -> list[bytes]:

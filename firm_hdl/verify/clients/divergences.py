@@ -23,28 +23,17 @@ __all__ = ["KNOWN", "Finding", "KnownDivergence", "known_keys", "known_writing"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """One difference.
-
-    Attributes
-    ----------
-    what : str
-        ``encode``, ``decode``, the name of an unusual case of a packet, or ``encode`` and that of
-        a value.
-    value : Plain
-        The value to write, or the value of the packet.
-    packet : bytes
-        The packet to read.
-    expected, got : bytes, Plain or Refusal
-        The answers of the reference and of the library.
-    """
+    """One difference."""
 
     library: str
     reference: str
     wire: Wire
+    # `encode`, `decode`, the name of an unusual case of a packet, or `encode` and that of a value.
     what: str
     message: Message
-    value: Plain = field(repr=False)
-    packet: bytes = field(repr=False)
+    value: Plain = field(repr=False)  # The value to write, or the value of the packet.
+    packet: bytes = field(repr=False)  # The packet to read.
+    # The answers of the reference and of the library.
     expected: Any = field(repr=False)
     got: Any = field(repr=False)
 
@@ -62,36 +51,17 @@ class Finding:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownDivergence:
-    """One known difference.
+    """One known difference."""
 
-    Attributes
-    ----------
-    key : str
-        The name of the difference, here and in docs/reference/divergences.md.
-    libraries : tuple of str
-        Libraries that differ from ROS.
-    wires : str
-        ``ros1``, ``cdr``, or both.
-    text : str
-        What the libraries do, in one sentence.
-    take_out : callable or None
-        Removes the difference from a value to write.
-    same : callable or None
-        Removes the difference from a value that was read.
-    case_names : tuple of str
-        Unusual cases that this divergence is about.
-    answer : "takes", "refuses" or None
-        What the libraries do with these cases while the other side does the opposite. `None`:
-        both sides take them.
-    """
-
-    key: str
-    libraries: tuple[str, ...]
-    wires: str
-    text: str
-    take_out: Change | None = None
-    same: Change | None = None
-    case_names: tuple[str, ...] = ()
+    key: str  # The name of the difference, here and in docs/reference/divergences.md.
+    libraries: tuple[str, ...]  # Libraries that differ from ROS.
+    wires: str  # `ros1`, `cdr`, or both.
+    text: str  # What the libraries do, in one sentence.
+    take_out: Change | None = None  # Removes the difference from a value to write.
+    same: Change | None = None  # Removes the difference from a value that was read.
+    case_names: tuple[str, ...] = ()  # Unusual cases that this divergence is about.
+    # What the libraries do with these cases while the other side does the opposite. `None`: both
+    # sides take them.
     answer: Literal["takes", "refuses"] | None = None
 
     def is_about(self, finding: Finding) -> str | None:

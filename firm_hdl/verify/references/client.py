@@ -117,23 +117,12 @@ def _answer(ask: Callable[[T], R], question: T) -> R | Refusal:
 
 
 class Client(ABC):
-    """A client library.
+    """A client library."""
 
-    Attributes
-    ----------
-    name : str
-        The name that ``--sut`` takes.
-    wires : set of "ros1" and "cdr"
-        The wire formats that it supports.
-    byte_orders : tuple of "little" and "big"
-        The byte orders of CDR that it supports.
-    may_confirm : bool
-        Whether TS3 may compare its packets with those of rosbags (``--reference``).
-    """
-
-    name: ClassVar[str]
-    wires: ClassVar[frozenset[Wire]]
-    byte_orders: ClassVar[tuple[str, ...]] = ("little",)
+    name: ClassVar[str]  # The name that `--sut` takes.
+    wires: ClassVar[frozenset[Wire]]  # The wire formats that it supports.
+    byte_orders: ClassVar[tuple[str, ...]] = ("little",)  # The byte orders of CDR that it supports.
+    # Whether TS3 may compare its packets with those of rosbags (`--reference`).
     may_confirm: ClassVar[bool] = False
 
     @abstractmethod

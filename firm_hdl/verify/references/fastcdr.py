@@ -40,22 +40,15 @@ _CODES = {"bool": "?", "float32": "f", "float64": "d", "wchar": "W"}
 
 
 class FastCdr(Client):
-    """Fast CDR as ROS 2's type support calls it.
-
-    Attributes
-    ----------
-    release : Release or None
-        The ROS release whose environment has the library; `None`: the system has it.
-    wchar_bytes : int
-        How many bytes the library writes for a wide character.
-    """
+    """Fast CDR as ROS 2's type support calls it."""
 
     name: ClassVar[str] = "fastcdr"
     wires: ClassVar = frozenset({"cdr"})
     byte_orders = ("little", "big")
     may_confirm = True
+    # The ROS release whose environment has the library; `None`: the system has it.
     release: ClassVar[Release | None] = None
-    wchar_bytes: ClassVar[int] = 4
+    wchar_bytes: ClassVar[int] = 4  # How many bytes the library writes for a wide character.
 
     @cached_property
     def _program(self) -> _Program:

@@ -43,18 +43,10 @@ _HOW = "(python3 -m pip install 'firm-hdl[clients]')"
 
 
 class _Imported(Client):
-    """A library that is imported.
+    """A library that is imported."""
 
-    Attributes
-    ----------
-    package : str
-        Its name on PyPI.
-    module : str
-        The module of it that is imported.
-    """
-
-    package: ClassVar[str]
-    module: ClassVar[str]
+    package: ClassVar[str]  # Its name on PyPI.
+    module: ClassVar[str]  # The module of it that is imported.
 
     def missing(self) -> str | None:
         try:

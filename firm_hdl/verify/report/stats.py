@@ -22,15 +22,10 @@ MOST_CURVE_POINTS = 240
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Box:
-    """The distribution of values.
-
-    Attributes
-    ----------
-    least, q1, median, q3, p95, most : float
-        Quartiles and the 95th percentile between the smallest value and the largest.
-    """
+    """The distribution of values."""
 
     count: int
+    # Quartiles and the 95th percentile between the smallest value and the largest.
     least: float
     q1: float
     median: float
@@ -51,21 +46,13 @@ class Fit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Correlation:
-    """The correlation of a figure with a time.
+    """The correlation of a figure with a time."""
 
-    Attributes
-    ----------
-    count : int
-        The number of pairs.
-    pearson, spearman : float
-        The correlation of the values, and that of their ranks.
-    linear, power : Fit or None
-        `None` if there are too few points. Only pairs above zero count for the power law.
-    """
-
-    count: int
+    count: int  # The number of pairs.
+    # The correlation of the values, and that of their ranks.
     pearson: float
     spearman: float
+    # `None` if there are too few points. Only pairs above zero count for the power law.
     linear: Fit | None
     power: Fit | None
 

@@ -48,17 +48,12 @@ class NotRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
-    """The outcome of a test.
-
-    Attributes
-    ----------
-    circuit_of : str
-        Name of the type whose equal circuit was simulated instead of the circuit of this type.
-    """
+    """The outcome of a test."""
 
     test: Test
     verdict: Verdict | NotRun
     record: Record | None
+    # Name of the type whose equal circuit was simulated instead of the circuit of this type.
     circuit_of: str = ""
 
 
@@ -147,14 +142,9 @@ _TOP = 15
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Group:
-    """Tests that have something in common.
+    """Tests that have something in common."""
 
-    Attributes
-    ----------
-    labels : tuple of str
-        What the tests have in common, such as the suite and the distribution.
-    """
-
+    # What the tests have in common, such as the suite and the distribution.
     labels: tuple[str, ...]
     counts: Counts
     cpu_seconds: float
@@ -162,117 +152,78 @@ class Group:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """Times of the tests of a suite.
-
-    Attributes
-    ----------
-    points : tuple of (float, float)
-        Times in seconds, and the share of tests that took at most this time.
-    within : mapping of float to float
-        The same share for each of `LIMITS`.
-    seconds, cpu_seconds : Box or None
-        Wall-clock time, and processor time.
-    stages : mapping of str to Box
-        Times of each stage that took time.
-    stage_values : mapping of str to tuple of float
-        Times of each stage, at most `MOST_POINTS` of them.
-    """
+    """Times of the tests of a suite."""
 
     suite: str
+    # Times in seconds, and the share of tests that took at most this time.
     points: tuple[tuple[float, float], ...]
-    within: Mapping[float, float]
+    within: Mapping[float, float]  # The same share for each of `LIMITS`.
+    # Wall-clock time, and processor time.
     seconds: Box | None
     cpu_seconds: Box | None
-    stages: Mapping[str, Box]
+    stages: Mapping[str, Box]  # Times of each stage that took time.
+    # Times of each stage, at most `MOST_POINTS` of them.
     stage_values: Mapping[str, tuple[float, ...]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trend:
-    """The correlation of a figure of types with a time of their tests.
+    """The correlation of a figure of types with a time of their tests."""
 
-    Attributes
-    ----------
-    suite, metric, time : str
-        `time` is the name of a stage, or ``total``.
-    points : tuple of (float, float)
-        Pairs of figure and seconds, at most `MOST_POINTS` of them; only if `time` is ``total``.
-    """
-
+    # `time` is the name of a stage, or `total`.
     suite: str
     metric: str
     time: str
     correlation: Correlation
+    # Pairs of figure and seconds, at most `MOST_POINTS` of them; only if `time` is `total`.
     points: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoverageSum:
-    """Plan coverage of a suite.
-
-    Attributes
-    ----------
-    types, full : int
-        The number of tests with plan coverage, and the number of those with every decision taken.
-    taken, possible : int
-        Decisions of all of these tests.
-    """
+    """Plan coverage of a suite."""
 
     suite: str
+    # The number of tests with plan coverage, and the number of those with every decision taken.
     types: int
     full: int
+    # Decisions of all of these tests.
     taken: int
     possible: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSummary:
-    """A file of results.
-
-    Attributes
-    ----------
-    failure : str or None
-        Why the run failed; empty if it did not, `None` if it has not ended.
-    """
+    """A file of results."""
 
     name: str
     options: Mapping[str, Any]
     sessions: tuple[Mapping[str, str], ...]
     planned: int
     recorded: int
-    failure: str | None
+    failure: str | None  # Why the run failed; empty if it did not, `None` if it has not ended.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """The content of a report.
-
-    Attributes
-    ----------
-    by_suite, by_distro, by_package : tuple of Group
-        A test counts once in `by_suite`, and once for each of its distributions in the others.
-    circuits : mapping of str to (int, int)
-        By suite: different circuits, and tests that rely on the circuit of another type.
-    writers : mapping of str to (mapping of str to int)
-        By suite: libraries that wrote packets, and the number of tests for which they did.
-    oracles : tuple of OracleSum
-        The verdicts of the oracles of definitions.
-    said : tuple of Remark
-        Known differences from these oracles, and reasons why they did not judge.
-    """
+    """The content of a report."""
 
     title: str
     counts: Counts
+    # A test counts once in `by_suite`, and once for each of its distributions in the others.
     by_suite: tuple[Group, ...]
     by_distro: tuple[Group, ...]
     by_package: tuple[Group, ...]
     outcomes: tuple[Outcome, ...]
+    # By suite: different circuits, and tests that rely on the circuit of another type.
     circuits: Mapping[str, tuple[int, int]]
+    # By suite: libraries that wrote packets, and the number of tests for which they did.
     writers: Mapping[str, Mapping[str, int]]
     curves: tuple[Curve, ...]
     trends: tuple[Trend, ...]
     coverage: tuple[CoverageSum, ...]
-    oracles: tuple[OracleSum, ...]
+    oracles: tuple[OracleSum, ...]  # The verdicts of the oracles of definitions.
+    # Known differences from these oracles, and reasons why they did not judge.
     said: tuple[Remark, ...]
     runs: tuple[RunSummary, ...]
 
@@ -495,17 +446,11 @@ def _run(name: str, results: Results) -> RunSummary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OracleSum:
-    """The verdicts of an oracle on the definitions of a distribution.
-
-    Attributes
-    ----------
-    agree, refused, known, differ, not_judged : int
-        Numbers of definitions. `refused` are those among `agree` that firm-hdl and the oracle
-        refuse.
-    """
+    """The verdicts of an oracle on the definitions of a distribution."""
 
     distro: str
     oracle: str
+    # Numbers of definitions. `refused` are those among `agree` that firm-hdl and the oracle refuse.
     agree: int = 0
     refused: int = 0
     known: int = 0
@@ -515,38 +460,20 @@ class OracleSum:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remark:
-    """A known difference from an oracle, or a reason why the oracle did not judge.
-
-    Attributes
-    ----------
-    verdict : str
-        ``known difference`` or ``not judged``.
-    what : str
-        Key of a known difference, or a reason.
-    count : int
-        The number of definitions.
-    example : str
-        Name of one of these definitions.
-    """
+    """A known difference from an oracle, or a reason why the oracle did not judge."""
 
     oracle: str
-    verdict: str
-    what: str
-    count: int
-    example: str
+    verdict: str  # `known difference` or `not judged`.
+    what: str  # Key of a known difference, or a reason.
+    count: int  # The number of definitions.
+    example: str  # Name of one of these definitions.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reason:
-    """Tests with the same text, apart from names and numbers.
+    """Tests with the same text, apart from names and numbers."""
 
-    Attributes
-    ----------
-    text : str
-        The text of the first of these tests.
-    """
-
-    text: str
+    text: str  # The text of the first of these tests.
     outcomes: tuple[Outcome, ...]
 
 

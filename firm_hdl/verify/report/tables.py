@@ -78,22 +78,12 @@ SIGNS = {
 
 @dataclass(frozen=True, slots=True)
 class TableCell:
-    """A cell.
-
-    Attributes
-    ----------
-    value : float or None
-        The value to sort by, if it is a number.
-    verdict : str
-        The verdict that gives the cell its colour; empty: the colour of text.
-    counts : Counts or None
-        Counts that are drawn as a bar in HTML.
-    """
+    """A cell."""
 
     text: str
-    value: float | None = None
-    verdict: str = ""
-    counts: Counts | None = None
+    value: float | None = None  # The value to sort by, if it is a number.
+    verdict: str = ""  # The verdict that gives the cell its colour; empty: the colour of text.
+    counts: Counts | None = None  # Counts that are drawn as a bar in HTML.
 
 
 Row: TypeAlias = "Iterable[TableCell | str | float]"

@@ -54,26 +54,14 @@ class ResultsError(ValueError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Results:
-    """The content of a file.
+    """The content of a file."""
 
-    Attributes
-    ----------
-    options : mapping of str to object
-        The options of the run.
-    planned : tuple of Test
-        All tests of the run, with and without records.
-    records : mapping of str to Record
-        Records by key. The last of several records with the same key counts.
-    sessions : tuple of mapping of str to str
-        The environment of each session.
-    failure : str or None
-        Why the last session failed; empty if it did not, `None` if it has not ended.
-    """
-
-    options: Mapping[str, Any] = field(default_factory=dict)
-    planned: tuple[Test, ...] = ()
+    options: Mapping[str, Any] = field(default_factory=dict)  # The options of the run.
+    planned: tuple[Test, ...] = ()  # All tests of the run, with and without records.
+    # Records by key. The last of several records with the same key counts.
     records: Mapping[str, Record] = field(default_factory=dict)
-    sessions: tuple[Mapping[str, str], ...] = ()
+    sessions: tuple[Mapping[str, str], ...] = ()  # The environment of each session.
+    # Why the last session failed; empty if it did not, `None` if it has not ended.
     failure: str | None = ""
 
     @property

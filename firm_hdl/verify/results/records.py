@@ -45,39 +45,23 @@ STAGES = ("generation", "simulation", "testing")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Test:
-    """One test of one type by one test system.
-
-    Attributes
-    ----------
-    system : str
-        ``ts1``, ``ts2``, ``ts3``, ``bench`` or ``board``.
-    distro, type : str
-        The type is a message. For ``ts1``, the type is what a file defines, such as a service.
-        `distro` is empty for what concerns all of them.
-    same : tuple of str
-        All distributions that the result counts for, `distro` included: those with an equal
-        definition of the type.
-    simulator : str
-        Empty if nothing is simulated.
-    wire : str
-        ``ros1`` or ``cdr``; empty if only the definition is tested.
-    bus_bytes : int
-        0 if no circuit is tested.
-    options : str
-        Everything else that results depend on, such as ``seed=0``.
-    """
+    """One test of one type by one test system."""
 
     # Pytest takes classes of this name for tests.
     __test__ = False
 
-    system: str
+    system: str  # `ts1`, `ts2`, `ts3`, `bench` or `board`.
+    # The type is a message. For `ts1`, the type is what a file defines, such as a service. `distro`
+    # is empty for what concerns all of them.
     distro: str
     type: str
+    # All distributions that the result counts for, `distro` included: those with an equal
+    # definition of the type.
     same: tuple[str, ...] = ()
-    simulator: str = ""
-    wire: str = ""
-    bus_bytes: int = 0
-    options: str = ""
+    simulator: str = ""  # Empty if nothing is simulated.
+    wire: str = ""  # `ros1` or `cdr`; empty if only the definition is tested.
+    bus_bytes: int = 0  # 0 if no circuit is tested.
+    options: str = ""  # Everything else that results depend on, such as `seed=0`.
 
     @property
     def key(self) -> str:
@@ -106,20 +90,14 @@ class Test:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Seconds:
-    """The duration of each stage of a test.
+    """The duration of each stage of a test."""
 
-    Attributes
-    ----------
-    generation : float
-        From the definition to the object under test: the model, the plan, or a circuit that is
-        ready to run, with its cases.
-    testing : float
-        Asking oracles and comparing. TS3 compares the output with the oracle and the golden model,
-        TS2 the plan with its layout, and TS1 the model with the readings of oracles.
-    """
-
+    # From the definition to the object under test: the model, the plan, or a circuit that is ready
+    # to run, with its cases.
     generation: float = 0.0
     simulation: float = 0.0
+    # Asking oracles and comparing. TS3 compares the output with the oracle and the golden model,
+    # TS2 the plan with its layout, and TS1 the model with the readings of oracles.
     testing: float = 0.0
 
     @property
@@ -130,84 +108,50 @@ class Seconds:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanCoverage:
-    """The decisions of a plan that the packets of a test took.
-
-    Attributes
-    ----------
-    missing : tuple of str
-        Names of the decisions that were not taken.
-    """
+    """The decisions of a plan that the packets of a test took."""
 
     taken: int
     possible: int
-    missing: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()  # Names of the decisions that were not taken.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OracleVerdict:
-    """The verdict on a type by one oracle of definitions.
-
-    Attributes
-    ----------
-    verdict : Verdict
-        Its cases are the facts that were compared.
-    is_refused : bool
-        Whether both refuse the definition.
-    """
+    """The verdict on a type by one oracle of definitions."""
 
     oracle: str
-    verdict: Verdict
-    is_refused: bool = False
+    verdict: Verdict  # Its cases are the facts that were compared.
+    is_refused: bool = False  # Whether both refuse the definition.
 
 
 @dataclass(slots=True, kw_only=True)
 class Record:
-    """The result of a test. While the test runs, its figures are added.
-
-    Attributes
-    ----------
-    verdict : Verdict
-        The verdict of this test alone. For a test that relies on the circuit of another test, see
-        `settled`.
-    note : str
-        A remark about the oracle.
-    seconds : Seconds
-        Wall-clock time.
-    cases, packets, cycles, beats : int
-        Cases of the type; packets and cycles of all runs; beats of one run of all cases.
-    metrics : dict of str to float
-        Figures of the type and of its plan.
-    shape : str
-        Digest of the plan without names. Types with equal digests have the same circuit.
-    same_as : str
-        Key of the test that simulated the same circuit for another type; empty if the circuit of
-        this type was simulated.
-    verdicts : tuple of OracleVerdict
-        The verdicts of all oracles that read the definition.
-    written_by : tuple of str
-        Libraries that wrote the packets, all from the same values.
-    command : str
-        The command that repeats the test.
-    waveform_command : str
-        The command that repeats the test and writes a waveform; empty if there is none.
-    """
+    """The result of a test. While the test runs, its figures are added."""
 
     test: Test
+    # The verdict of this test alone. For a test that relies on the circuit of another test, see
+    # `settled`.
     verdict: Verdict
-    note: str = ""
-    seconds: Seconds = field(default_factory=Seconds)
+    note: str = ""  # A remark about the oracle.
+    seconds: Seconds = field(default_factory=Seconds)  # Wall-clock time.
     cpu_seconds: float = 0.0
+    # Cases of the type; packets and cycles of all runs; beats of one run of all cases.
     cases: int = 0
     packets: int = 0
     cycles: int = 0
     beats: int = 0
     coverage: PlanCoverage | None = None
-    metrics: dict[str, float] = field(default_factory=dict)
+    metrics: dict[str, float] = field(default_factory=dict)  # Figures of the type and of its plan.
+    # Digest of the plan without names. Types with equal digests have the same circuit.
     shape: str = ""
+    # Key of the test that simulated the same circuit for another type; empty if the circuit of this
+    # type was simulated.
     same_as: str = ""
+    # The verdicts of all oracles that read the definition.
     verdicts: tuple[OracleVerdict, ...] = ()
-    written_by: tuple[str, ...] = ()
-    command: str = ""
+    written_by: tuple[str, ...] = ()  # Libraries that wrote the packets, all from the same values.
+    command: str = ""  # The command that repeats the test.
+    # The command that repeats the test and writes a waveform; empty if there is none.
     waveform_command: str = ""
 
     @property

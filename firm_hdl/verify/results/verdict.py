@@ -29,11 +29,6 @@ SILENT = "failed without saying why"
 class Passed:
     """Everything that was judged is right.
 
-    Attributes
-    ----------
-    cases : int
-        Number of packets, definitions or plans that were judged; at least 1.
-
     Raises
     ------
     ValueError
@@ -43,7 +38,7 @@ class Passed:
     name: ClassVar[str] = "passed"
     details: ClassVar[tuple[str, ...]] = ()
 
-    cases: int
+    cases: int  # Number of packets, definitions or plans that were judged; at least 1.
 
     def __post_init__(self) -> None:
         _check_cases(self.cases)
@@ -53,12 +48,6 @@ class Passed:
 class Failed:
     """Something is wrong, or the judge failed.
 
-    Attributes
-    ----------
-    failures : tuple of str
-        At least one text. A blank text becomes `SILENT`, because a tool that fails without a
-        message has failed, too.
-
     Raises
     ------
     ValueError
@@ -67,6 +56,8 @@ class Failed:
 
     name: ClassVar[str] = "failed"
 
+    # At least one text. A blank text becomes `SILENT`, because a tool that fails without a message
+    # has failed, too.
     failures: tuple[str, ...]
 
     def __post_init__(self) -> None:
@@ -109,13 +100,6 @@ class NotJudged:
 class KnownDifference:
     """The readings or packets differ only as documented.
 
-    Attributes
-    ----------
-    keys : tuple of str
-        Keys of the documented differences that explain the verdict; at least one.
-    cases : int
-        Number of cases that were compared without the known difference; at least 1.
-
     Raises
     ------
     ValueError
@@ -124,8 +108,9 @@ class KnownDifference:
 
     name: ClassVar[str] = "known difference"
 
+    # Keys of the documented differences that explain the verdict; at least one.
     keys: tuple[str, ...]
-    cases: int
+    cases: int  # Number of cases that were compared without the known difference; at least 1.
 
     def __post_init__(self) -> None:
         if not self.keys or not all(key.strip() for key in self.keys):

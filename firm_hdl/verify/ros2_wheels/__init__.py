@@ -19,17 +19,10 @@ _FOLDER = "FIRM_HDL_ROS2_WHEELS"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Release:
-    """A release of ROS 2.
+    """A release of ROS 2."""
 
-    Attributes
-    ----------
-    name : str
-        The name of the distribution.
-    rosidl, fastcdr : str
-        Versions, as they occur in the names of oracles and client libraries.
-    """
-
-    name: str
+    name: str  # The name of the distribution.
+    # Versions, as they occur in the names of oracles and client libraries.
     rosidl: str
     fastcdr: str
 

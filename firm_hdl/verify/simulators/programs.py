@@ -120,13 +120,11 @@ class TextSimulator(Protocol):
 
     Attributes
     ----------
-    title : str
-        The name of the simulator in messages.
     version : str
         What the simulator says of its version.
     """
 
-    title: str
+    title: str  # The name of the simulator in messages.
 
     @property
     def version(self) -> str: ...

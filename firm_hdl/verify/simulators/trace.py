@@ -37,16 +37,10 @@ CHUNK = 24
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Device:
-    """A converter that is exported.
-
-    Attributes
-    ----------
-    name : str
-        Name of its outermost entity, as ``firm-hdl build`` names it.
-    """
+    """A converter that is exported."""
 
     direction: Direction
-    name: str
+    name: str  # Name of its outermost entity, as `firm-hdl build` names it.
     plan: Plan
 
     @classmethod
@@ -59,17 +53,11 @@ class Device:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pin:
-    """A port of one of the devices.
-
-    Attributes
-    ----------
-    number : int
-        The number of the port in rows. Inputs and outputs are numbered separately, over all
-        devices.
-    """
+    """A port of one of the devices."""
 
     device: int
     port: Port
+    # The number of the port in rows. Inputs and outputs are numbered separately, over all devices.
     number: int
 
 

@@ -77,48 +77,31 @@ LONGEST = 1 << 18
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """How a type is tested.
-
-    Attributes
-    ----------
-    wire : "ros1", "cdr" or None
-        `None`: that of the distribution.
-    stalled, broken : bool
-        Whether to run with stalls, and with broken packets, as well.
-    simulator : str
-        ``python``, or the simulator of exported text in which every run is replayed: a key of
-        :data:`firm_hdl.verify.simulators.programs.SIMULATORS`.
-    paths : tuple of str
-        Folders with ROS packages. They are searched before the distribution's own types.
-    depends : tuple of str
-        Folders with packages that others depend on, searched after `paths`. Their types are not
-        tested if no type is named.
-    bags : tuple of str
-        Recordings whose messages are replayed. All definitions come from the recordings then.
-    longest : int
-        Size of the longest recorded message to replay, in bytes.
-    references : tuple of str or None
-        Libraries that have to write the same bytes as rosbags; `None`: all that are installed.
-    vcd : str or None
-        Folder for a waveform of each run.
-    simulated : bool
-        Whether the circuit is simulated, and not only the golden model. It need not be if the
-        same circuit is simulated for another type.
-    """
+    """How a type is tested."""
 
     bus_bytes: int = 8
-    wire: Wire | None = None
+    wire: Wire | None = None  # `None`: that of the distribution.
     seed: int = 0
+    # Whether to run with stalls, and with broken packets, as well.
     stalled: bool = True
     broken: bool = True
     most_cases: int | None = None
+    # `python`, or the simulator of exported text in which every run is replayed: a key of
+    # :data:`firm_hdl.verify.simulators.programs.SIMULATORS`.
     simulator: str = "python"
+    # Folders with ROS packages. They are searched before the distribution's own types.
     paths: tuple[str, ...] = ()
+    # Folders with packages that others depend on, searched after `paths`. Their types are not
+    # tested if no type is named.
     depends: tuple[str, ...] = ()
+    # Recordings whose messages are replayed. All definitions come from the recordings then.
     bags: tuple[str, ...] = ()
-    longest: int = LONGEST
+    longest: int = LONGEST  # Size of the longest recorded message to replay, in bytes.
+    # Libraries that have to write the same bytes as rosbags; `None`: all that are installed.
     references: tuple[str, ...] | None = None
-    vcd: str | None = None
+    vcd: str | None = None  # Folder for a waveform of each run.
+    # Whether the circuit is simulated, and not only the golden model. It need not be if the same
+    # circuit is simulated for another type.
     simulated: bool = True
 
     @property
@@ -131,60 +114,29 @@ class Options:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request(Options):
-    """The checked arguments of ``firm-hdl verify``.
+    """The checked arguments of ``firm-hdl verify``."""
 
-    Attributes
-    ----------
-    types : tuple of str
-        Empty: all types.
-    distros : tuple of str
-        Empty: the default of ``--distro``.
-    systems : tuple of str
-        Names of test systems, in the order in which they run.
-    libraries : tuple of str
-        Client libraries under test. If there are any, no test system runs.
-    widths : tuple of int
-        Buses, in bytes; see `each_width`.
-    jobs : int or None
-        Processes; `None`: one per processor.
-    executor : str
-        See :func:`firm_hdl.jobs.executors.run_each`.
-    oracles : tuple of str
-        Oracles of TS1; empty: all that are installed.
-    mutations : int
-        Number of mutated definitions that TS1 judges instead of the original ones; 0: none.
-    golden : str or None
-        Folder of golden plans.
-    share_circuits : bool or None
-        Whether one type is simulated for all that have the same circuit. `None`: only if all
-        types are tested, and no recording.
-    board : str or None
-        Board for the test system ``board``, as :func:`firm_hdl.node.boards.board_of` takes it.
-    node : str or None
-        File with the description of the board's node; `None`: one that loops the named types.
-    engine : str
-        Engine of a simulated board.
-    silent_seconds : float or None
-        How long a board may be silent; `None`: the default of its kind.
-    results, report : str or None
-        Files to write.
-    """
-
-    types: tuple[str, ...] = ()
-    distros: tuple[str, ...] = ()
-    systems: tuple[str, ...] = ("ts3",)
+    types: tuple[str, ...] = ()  # Empty: all types.
+    distros: tuple[str, ...] = ()  # Empty: the default of `--distro`.
+    systems: tuple[str, ...] = ("ts3",)  # Names of test systems, in the order in which they run.
+    # Client libraries under test. If there are any, no test system runs.
     libraries: tuple[str, ...] = ()
-    widths: tuple[int, ...] = (8,)
-    jobs: int | None = None
-    executor: str = PROCESSES
-    oracles: tuple[str, ...] = ()
-    mutations: int = 0
-    golden: str | None = None
+    widths: tuple[int, ...] = (8,)  # Buses, in bytes; see `each_width`.
+    jobs: int | None = None  # Processes; `None`: one per processor.
+    executor: str = PROCESSES  # See :func:`firm_hdl.jobs.executors.run_each`.
+    oracles: tuple[str, ...] = ()  # Oracles of TS1; empty: all that are installed.
+    golden: str | None = None  # Folder of golden plans.
+    # Whether one type is simulated for all that have the same circuit. `None`: only if all types
+    # are tested, and no recording.
     share_circuits: bool | None = None
+    # Board for the test system `board`, as :func:`firm_hdl.node.boards.board_of` takes it.
     board: str | None = None
+    # File with the description of the board's node; `None`: one that loops the named types.
     node: str | None = None
-    engine: str = "auto"
+    engine: str = "auto"  # Engine of a simulated board.
+    # How long a board may be silent; `None`: the default of its kind.
     silent_seconds: float | None = None
+    # Files to write.
     results: str | None = None
     report: str | None = None
 

@@ -13,7 +13,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, TypeAlias, TypeVar
+from typing import Any, ClassVar, TypeAlias
 
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import described
@@ -46,9 +46,7 @@ __all__ = [
     "kept",
     "print_passes",
     "recorded",
-    "run_shares",
     "run_tests",
-    "shares_of",
     "wire_of",
 ]
 
@@ -56,8 +54,9 @@ MOST_SHOWN = 8
 MOST_CHARACTERS = 1000
 """So many failures of a test are printed, each of at most so many characters."""
 
-K = TypeVar("K")
-R = TypeVar("R")
+SHARES = 64
+"""There are at least so many shares of tests, if there are so many tests."""
+
 Made: TypeAlias = "Generator[Sequence[Record], None, None]"
 """Yields records of tests; those that come together are written together."""
 
@@ -69,15 +68,9 @@ def counted(records: Iterable[Record]) -> list[Record]:
 
 
 class System(ABC):
-    """A test system with all its tests; a context manager.
+    """A test system with all its tests; a context manager."""
 
-    Attributes
-    ----------
-    name : str
-        The name that ``--systems`` takes.
-    """
-
-    name: ClassVar[str]
+    name: ClassVar[str]  # The name that `--systems` takes.
 
     def __enter__(self) -> System:
         return self
@@ -163,27 +156,15 @@ class Stopwatch:
 
 @dataclass(slots=True, kw_only=True)
 class Trial:
-    """A test that runs, and what it has found so far.
+    """A test that runs, and what it has found so far."""
 
-    Attributes
-    ----------
-    record : Record
-        Receives figures and notes. Its verdict, its times and nothing else are set at the end.
-    failures : list of str
-        Failures in the order in which they were found.
-    judged : int
-        The number of cases that were compared with an oracle.
-    known : tuple of str
-        Keys of the known differences that were found.
-    obstacle : NotJudged or None
-        Why the test cannot be judged.
-    """
-
+    # Receives figures and notes. Its verdict, its times and nothing else are set at the end.
     record: Record
+    # Failures in the order in which they were found.
     failures: list[str] = field(default_factory=list)
-    judged: int = 0
-    known: tuple[str, ...] = ()
-    obstacle: NotJudged | None = None
+    judged: int = 0  # The number of cases that were compared with an oracle.
+    known: tuple[str, ...] = ()  # Keys of the known differences that were found.
+    obstacle: NotJudged | None = None  # Why the test cannot be judged.
     watch: Stopwatch = field(default_factory=Stopwatch)
 
     @classmethod
@@ -317,63 +298,40 @@ def run_tests(
 ) -> Made:
     """Call ``work(context, test)`` for each test, and yield records when they are ready.
 
+    A process gets a share of the tests at once, and their records come together: to sync a file
+    takes some milliseconds. If it dies, the tests of the share run again one by one, to find the
+    one at fault.
+
     Parameters
     ----------
     command : callable
         Returns the command that repeats a test.
     most : int
-        The largest number of tests that a process gets at once. Their records come together.
-    """
-    shares = shares_of(tests, most)
-    run = run_shares(_work_share, (work, context), shares, executor=executor, jobs=jobs)
-    with closing(run):
-        for share, result in run:
-            if isinstance(result, Exception):
-                died = Failed((f"{type(result).__name__}: {result}",))
-                result = [Record(test=test, verdict=died) for test in share]
-            yield [replace(each, command=command(each.test)) for each in result]
-
-
-def _work_share(
-    given: tuple[Callable[[Any, Test], Record], object], share: tuple[Test, ...]
-) -> list[Record]:
-    work, context = given
-    return [work(context, test) for test in share]
-
-
-def shares_of(items: Sequence[K], most: int, parts: int = 64) -> list[tuple[K, ...]]:
-    """Divide items into shares of at most `most`, and at least `parts` shares where possible.
-
-    The order is kept. Records of a share are synced together: each sync takes some milliseconds.
-    """
-    size = min(most, max(1, len(items) // parts))
-    return [tuple(items[at : at + size]) for at in range(0, len(items), size)]
-
-
-def run_shares(
-    work: Callable[[Any, tuple[K, ...]], R],
-    context: object,
-    shares: Sequence[tuple[K, ...]],
-    *,
-    executor: str = PROCESSES,
-    jobs: int | None = None,
-) -> Generator[tuple[tuple[K, ...], R | Exception], None, None]:
-    """Call ``work(context, share)`` for each share, and yield each share with its result.
-
-    If a process dies in a share, the share is run again item by item, to find the item at fault.
+        The largest number of tests of a share.
 
     Raises
     ------
     ExecutorError
         See :func:`firm_hdl.jobs.executors.run_each`.
     """
-    again: list[tuple[K, ...]] = []
-    tasks = [(share, (context, share)) for share in shares]
-    with closing(run_each(work, tasks, executor=executor, jobs=jobs)) as results:
-        for share, result in results:
-            if isinstance(result, ExecutorError) and len(share) > 1:
-                again += [(item,) for item in share]
-            else:
-                yield share, result
-    if again:
-        yield from run_shares(work, context, again, executor=executor, jobs=jobs)
+    size = min(most, max(1, len(tests) // SHARES))
+    shares = [tuple(tests[at : at + size]) for at in range(0, len(tests), size)]
+    while shares:
+        again: list[tuple[Test, ...]] = []
+        tasks = [(share, (work, context, share)) for share in shares]
+        with closing(run_each(_work_share, tasks, executor=executor, jobs=jobs)) as results:
+            for share, result in results:
+                if isinstance(result, ExecutorError) and len(share) > 1:
+                    again += [(test,) for test in share]
+                    continue
+                if isinstance(result, Exception):
+                    died = Failed((f"{type(result).__name__}: {result}",))
+                    result = [Record(test=test, verdict=died) for test in share]
+                yield [replace(each, command=command(each.test)) for each in result]
+        shares = again
+
+
+def _work_share(
+    work: Callable[[Any, Test], Record], context: object, share: Sequence[Test]
+) -> list[Record]:
+    return [work(context, test) for test in share]

@@ -26,17 +26,11 @@ class UnknownTypeError(ValueError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TypeUnderTest:
-    """A type to test.
-
-    Attributes
-    ----------
-    same : tuple of str
-        All distributions with an equal type, `distro` included.
-    """
+    """A type to test."""
 
     distro: str
     name: str
-    same: tuple[str, ...]
+    same: tuple[str, ...]  # All distributions with an equal type, `distro` included.
 
 
 def library_of(distro: str, options: Options) -> Library:

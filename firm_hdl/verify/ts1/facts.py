@@ -58,17 +58,10 @@ class Said(str):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """One fact that differs between two readers.
+    """One fact that differs between two readers."""
 
-    Attributes
-    ----------
-    path : str
-        The place of the difference: ``verdict``, or a path through the facts.
-    ours, theirs : object
-        Our fact and the oracle's. Lists of members are lists of their names.
-    """
-
-    path: str
+    path: str  # The place of the difference: `verdict`, or a path through the facts.
+    # Our fact and the oracle's. Lists of members are lists of their names.
     ours: Any
     theirs: Any
 

@@ -26,42 +26,25 @@ __all__ = ["KNOWN", "Known"]
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """One deliberate difference: a row of the table.
+    """One deliberate difference: a row of the table."""
 
-    Attributes
-    ----------
-    key : str
-        The name of the difference, here and in docs/reference/errata.md.
-    oracles : str
-        Names of the oracles that differ from us, separated by blanks.
-    why : str
-        What differs, in one sentence.
-    language : Language or None
-        Those of the definitions; `None`: any.
-    where : str
-        A pattern that the code of the definition, or of one that it needs, contains. Comments are
-        no code, and neither are string literals of IDL. It does not limit `ours`.
-    ours : tuple of str
-        Patterns for a mistake that we refuse and the oracle accepts: the first finds something in
-        our message, the second matches all words that the message is about.
-    theirs : str
-        A pattern that finds something in the message of the oracle, if it refuses a text that is
-        none of the mistakes of ROS.
-    facts : str
-        A pattern that finds something in the path of a fact that may differ; empty: none may.
-    like : callable or None
-        Takes our fact and the oracle's. Returns whether they differ in this way; `None`: any way.
-    """
-
-    key: str
-    oracles: str
-    why: str
+    key: str  # The name of the difference, here and in docs/reference/errata.md.
+    oracles: str  # Names of the oracles that differ from us, separated by blanks.
+    why: str  # What differs, in one sentence.
     dialect: Dialect | None = None
-    language: Language | None = None
+    language: Language | None = None  # Those of the definitions; `None`: any.
+    # A pattern that the code of the definition, or of one that it needs, contains. Comments are no
+    # code, and neither are string literals of IDL. It does not limit `ours`.
     where: str = ""
+    # Patterns for a mistake that we refuse and the oracle accepts: the first finds something in our
+    # message, the second matches all words that the message is about.
     ours: tuple[str, str] | None = None
+    # A pattern that finds something in the message of the oracle, if it refuses a text that is none
+    # of the mistakes of ROS.
     theirs: str = ""
+    # A pattern that finds something in the path of a fact that may differ; empty: none may.
     facts: str = ""
+    # Takes our fact and the oracle's. Returns whether they differ in this way; `None`: any way.
     like: Callable[[Any, Any], bool] | None = None
 
     def is_about(self, oracle: str, case: DefinitionCase) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
 import time
 from collections import Counter
@@ -21,7 +20,6 @@ from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.system import Made, System, failure_of, kept, run_tests
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.judge import judge_case
-from firm_hdl.verify.ts1.mutate import mutation
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Oracle
 from firm_hdl.verify.ts1.universe import DefinitionCase, Universe, write_definitions
@@ -89,23 +87,20 @@ class _Context:
 
 
 class Ts1(System):
-    """The test system of TS1: a test gives one definition, or one mutation, to all oracles.
+    """The test system of TS1: a test gives one definition to all oracles.
 
     Processes are always on this machine, because oracles read files.
 
     Parameters
     ----------
     request : Request
-        A request for one distribution. `distros`, `paths`, `depends`, `types`, `mutations`, `seed`,
-        `oracles` and `jobs` are used. Mutations are made from the definitions of the types. `seed`
-        is the number of the first mutation. The oracles that are named all have to be installed.
+        A request for one distribution. `distros`, `paths`, `depends`, `types`, `oracles` and `jobs`
+        are used. The oracles that are named all have to be installed.
 
     Attributes
     ----------
     cases : dict of Test to DefinitionCase
-        The definitions or mutations to judge.
-    digest : str
-        A digest of the definitions that mutations are made from.
+        The definitions to judge.
     versions : dict of str to str
         Releases of the oracles that are asked, by name.
     missing : dict of str to str
@@ -131,9 +126,7 @@ class Ts1(System):
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-"))
             universe = _universe(request, folder)
             write_definitions(universe)
-            originals = universe.select(request.types)
-            self.digest = _digest(originals)
-            self.cases = _cases(request, originals)
+            self.cases = _cases(request, universe)
             for name in request.oracles or ORACLES:
                 if universe.dialect in ORACLES[name].languages:
                     self._find(ORACLES[name](universe))
@@ -158,29 +151,29 @@ class Ts1(System):
 
     @property
     def tests(self) -> Sequence[Test]:
-        """The tests of all definitions, or of their mutations."""
+        """The tests of all definitions."""
         return list(self.cases)
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """The oracles with their versions, and a digest of the definitions to mutate."""
+        """The oracles with their versions."""
         oracles = [f"{name} {version}".strip() for name, version in self.versions.items()]
-        mutated = {f"mutated {self.distro}": self.digest} if self.request.mutations else {}
-        return {f"oracles of {self.distro}": sorted(oracles), **mutated}
+        return {f"oracles of {self.distro}": sorted(oracles)}
 
     def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Judge everything. A named oracle that is not installed is a failure."""
         began = time.perf_counter()
-        what = "mutation" if self.request.mutations else "definition"
         label = f"ts1 {self.distro}"
-        records = kept(self.tests, writer, self.judged, self._lines_of, label=label, unit=what)
+        records = kept(
+            self.tests, writer, self.judged, self._lines_of, label=label, unit="definition"
+        )
         print(*self.summary(records), sep="\n")
         differing = sum(
             max(1, sum(isinstance(each.verdict, Failed) for each in record.verdicts))
             for record in records
             if isinstance(record.verdict, Failed)
         )
-        count = f"{len(records)} {what}{'s' * (len(records) != 1)}"
+        count = f"{len(records)} definition{'s' * (len(records) != 1)}"
         print(f"{count}, {time.perf_counter() - began:.0f} s, {differing} differences")
         for name, why in self.missing.items() if self.request.oracles else ():
             test = Test(system=self.name, distro=self.distro, type=f"oracle {name}")
@@ -201,18 +194,15 @@ class Ts1(System):
         )
 
     def command(self, test: Test, oracles: Sequence[str] = ()) -> str:
-        """Return the command that judges one definition or one mutation again."""
+        """Return the command that judges one definition again."""
         request = self.request
-        number = int(test.options.rpartition("=")[2]) if request.mutations else None
         return command_again(
-            *([test.type] if number is None else request.types or ["--all"]),
+            test.type,
             systems="ts1",
             distro=request.distros,
             path=request.paths,
             depends=request.depends,
             oracle=tuple(oracles),
-            mutations=None if number is None else 1,
-            seed=number,
         )
 
     def _lines_of(self, record: Record) -> Iterator[str]:
@@ -223,7 +213,6 @@ class Ts1(System):
             yield from failure_of(case.full_name, record)
         for each in failed:
             lines = [f"DIFFERS {case.full_name}.{case.language}, {each.oracle}"]
-            lines += [f"    {line}" for line in (case.changes if case.is_changed else ())]
             details = each.verdict.details
             lines += [f"    {detail}" for detail in details[:_MOST_DETAILS]]
             if len(details) > _MOST_DETAILS:
@@ -236,7 +225,7 @@ class Ts1(System):
         counts: Counter[tuple[str, str]] = Counter()
         refused: Counter[str] = Counter()
         details: Counter[tuple[str, str, str]] = Counter()
-        is_short = not self.request.mutations and len(records) <= _MOST_SHOWN
+        is_short = len(records) <= _MOST_SHOWN
         for record in records:
             for each in record.verdicts:
                 verdict, texts = each.verdict, each.verdict.details
@@ -263,32 +252,18 @@ def _universe(request: Request, folder: str) -> Universe:
     return Universe(request.distros[0], request.paths, folder, depends=request.depends)
 
 
-def _digest(cases: Sequence[DefinitionCase]) -> str:
-    digest = hashlib.sha256()
-    for case in cases:
-        digest.update(f"{case.spelled_name} {case.language} {len(case.text)}\n".encode())
-        digest.update(case.text.encode("utf-8", "surrogatepass"))
-    return digest.hexdigest()[:16]
-
-
-def _cases(request: Request, originals: Sequence[DefinitionCase]) -> dict[Test, DefinitionCase]:
-    """Return the definitions or mutations to judge, by their tests."""
-    options = [*request.folders, *(f"oracle={name}" for name in request.oracles)]
-    numbers: Sequence[int] = range(request.seed, request.seed + request.mutations)
-    if numbers:
-        options += [f"of={name}" for name in request.types]
-        cases = [(mutation(originals, number), [f"mutation={number}"]) for number in numbers]
-    else:
-        cases = [(case, []) for case in originals]
+def _cases(request: Request, universe: Universe) -> dict[Test, DefinitionCase]:
+    """Return the definitions to judge, by their tests."""
+    options = ",".join([*request.folders, *(f"oracle={name}" for name in request.oracles)])
     return {
         Test(
             system="ts1",
             distro=request.distros[0],
             type=case.spelled_name,
             same=request.distros,
-            options=",".join(options + own),
+            options=options,
         ): case
-        for case, own in cases
+        for case in universe.select(request.types)
     }
 
 
@@ -297,7 +272,7 @@ class _Session:
 
     def __init__(self, context: _Context) -> None:
         self.universe = _universe(context.request, context.folder)
-        self.cases = _cases(context.request, self.universe.select(context.request.types))
+        self.cases = _cases(context.request, self.universe)
         self.oracles = [ORACLES[name](self.universe) for name in context.oracles]
         for oracle in self.oracles:
             # Start the oracle's process now, so that no definition is charged for the time.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -31,43 +30,22 @@ __all__ = ["DefinitionCase", "Universe", "write_definitions"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DefinitionCase:
-    """One definition to judge.
-
-    Attributes
-    ----------
-    kind : "msg", "srv" or "action"
-        The kind of interface that is defined, and the name of the folder of the file.
-    language : "msg", "srv", "action" or "idl"
-        The language of the definition, and the suffix of the file's name.
-    text : str
-        The whole text, with its own line ends.
-    source : str
-        The name of the file, or of a text that comes with firm-hdl.
-    before : str or None
-        The original text of the file, if `text` was changed.
-    """
+    """One definition to judge."""
 
     dialect: Dialect
     package: str
-    kind: Kind
+    kind: Kind  # The kind of interface that is defined, and the name of the folder of the file.
     name: str
-    language: Language
-    text: str
+    language: Language  # The language of the definition, and the suffix of the file's name.
+    text: str  # The whole text, with its own line ends.
+    # The name of the file, or of a text that comes with firm-hdl.
     source: str = field(default="", compare=False)
-    before: str | None = None
+    before: str | None = None  # The original text of the file, if `text` was changed.
 
     @property
     def is_changed(self) -> bool:
         """Whether the text differs from that of the file."""
         return self.before is not None
-
-    @property
-    def changes(self) -> list[str]:
-        """Lines that a change has removed (``-``) and added (``+``)."""
-        lines = difflib.unified_diff(
-            (self.before or "").splitlines(), self.text.splitlines(), lineterm="", n=0
-        )
-        return [repr(line)[1:-1] for line in list(lines)[2:] if not line.startswith("@@")]
 
     @property
     def full_name(self) -> str:

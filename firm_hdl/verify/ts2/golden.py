@@ -46,42 +46,22 @@ _MOST_BYTES = 1 << 23
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Golden:
-    """One golden plan.
-
-    Attributes
-    ----------
-    path : Path
-    distro : str
-        Name of the folder that the file is in.
-    plan : Head
-        What the plan in the file is of.
-    text : str
-        The text of the file.
-    """
+    """One golden plan."""
 
     path: Path
-    distro: str
-    plan: Head
-    text: str
+    distro: str  # Name of the folder that the file is in.
+    plan: Head  # What the plan in the file is of.
+    text: str  # The text of the file.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Checked:
-    """The result of checking a golden plan.
-
-    Attributes
-    ----------
-    text : str
-        Today's plan in YAML; empty if there is none.
-    changes : tuple of Change
-        Changes from the golden plan to today's.
-    problems : tuple of str
-        Why there is no plan today, or which invariants today's plan breaks.
-    """
+    """The result of checking a golden plan."""
 
     golden: Golden
-    text: str
-    changes: tuple[Change, ...]
+    text: str  # Today's plan in YAML; empty if there is none.
+    changes: tuple[Change, ...]  # Changes from the golden plan to today's.
+    # Why there is no plan today, or which invariants today's plan breaks.
     problems: tuple[str, ...]
 
     @property

@@ -173,18 +173,13 @@ class Acceptance:
     max_message_bytes : int or None
         The limit of the converters; `None`: `message_limit` of the type.
 
-    Attributes
-    ----------
-    circuit : Circuit
-        Only if the circuit is to be simulated.
-
     Raises
     ------
     NotJudgedError
         If the type is too large to simulate.
     """
 
-    circuit: Circuit
+    circuit: Circuit  # Only if the circuit is to be simulated.
 
     def __init__(
         self,

@@ -24,20 +24,12 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Expected:
-    """The expected output of a run of both converters.
+    """The expected output of a run of both converters."""
 
-    Attributes
-    ----------
-    packets : sequence of bytes
-        Packets that come out. They are marked as errors if the serializer's status is not ``OK``.
-    transfers : sequence of mapping
-        Payloads by path of the leaf, a mapping for each message.
-    statuses, sent_statuses : sequence of str
-        Statuses of the deserializer, and of the serializer.
-    """
-
+    # Packets that come out. They are marked as errors if the serializer's status is not `OK`.
     packets: Sequence[bytes]
-    transfers: Sequence[Transfers]
+    transfers: Sequence[Transfers]  # Payloads by path of the leaf, a mapping for each message.
+    # Statuses of the deserializer, and of the serializer.
     statuses: Sequence[str]
     sent_statuses: Sequence[str]
 

@@ -31,23 +31,13 @@ MOST_BYTES = 1 << 18
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Confirmation:
-    """The packets of other libraries, compared with those of rosbags.
+    """The packets of other libraries, compared with those of rosbags."""
 
-    Attributes
-    ----------
-    by : tuple of str
-        Libraries that could be asked to write the cases, with or without differences.
-    failures : tuple of str
-        Unknown differences.
-    known : tuple of str
-        Keys of the known divergences.
-    unable : dict of str to str
-        Libraries that lack the wire format or the type, and why.
-    """
-
+    # Libraries that could be asked to write the cases, with or without differences.
     by: tuple[str, ...]
-    failures: tuple[str, ...] = ()
-    known: tuple[str, ...] = ()
+    failures: tuple[str, ...] = ()  # Unknown differences.
+    known: tuple[str, ...] = ()  # Keys of the known divergences.
+    # Libraries that lack the wire format or the type, and why.
     unable: Mapping[str, str] = field(default_factory=dict)
 
 

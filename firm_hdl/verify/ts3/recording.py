@@ -34,20 +34,12 @@ Place: TypeAlias = "tuple[str, Topic]"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordedMessage:
-    """A message as it was recorded.
-
-    Attributes
-    ----------
-    number : int
-        The index of the message in its topic, from 0, in the order of times.
-    nanoseconds : int
-        The time of the recording.
-    """
+    """A message as it was recorded."""
 
     bag: str
     topic: str
-    number: int
-    nanoseconds: int
+    number: int  # The index of the message in its topic, from 0, in the order of times.
+    nanoseconds: int  # The time of the recording.
     data: bytes
 
     def __str__(self) -> str:
@@ -57,26 +49,14 @@ class RecordedMessage:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Selection:
-    """Messages of a type that were selected.
+    """Messages of a type that were selected."""
 
-    Attributes
-    ----------
-    messages : tuple of RecordedMessage
-        Selected messages, recording by recording, in the order of their times.
-    total : int
-        The number of all messages of the type.
-    topics : int
-        The number of topics with these messages.
-    too_long : tuple of int
-        Sizes in bytes of the messages that are too long.
-    sparse : bool
-        Whether fewer messages than asked for were selected, because of their total size.
-    """
-
+    # Selected messages, recording by recording, in the order of their times.
     messages: tuple[RecordedMessage, ...]
-    total: int
-    topics: int
-    too_long: tuple[int, ...]
+    total: int  # The number of all messages of the type.
+    topics: int  # The number of topics with these messages.
+    too_long: tuple[int, ...]  # Sizes in bytes of the messages that are too long.
+    # Whether fewer messages than asked for were selected, because of their total size.
     sparse: bool
 
 

@@ -158,19 +158,11 @@ def _select(message: Message, topics: Sequence[Place], options: Options) -> Sele
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Judged:
-    """A message and the expected results of its replay.
-
-    Attributes
-    ----------
-    kind : str
-        How the packet differs from the one that rosbags writes; empty if it does not.
-    finding : str
-        What is wrong with the message itself; empty if nothing is wrong.
-    """
+    """A message and the expected results of its replay."""
 
     case: Case
-    kind: str = ""
-    finding: str = ""
+    kind: str = ""  # How the packet differs from the one that rosbags writes; empty if it does not.
+    finding: str = ""  # What is wrong with the message itself; empty if nothing is wrong.
 
 
 def _judge(plan: Plan, judge: Judge, message: RecordedMessage, with_bag: bool) -> _Judged:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 import firm_hdl.verify.ts3.acceptance as acceptance
@@ -51,16 +49,6 @@ ALL, NAMED = Request(), Request(types=("p/msg/T",))
 def test_success_needs_a_judgement_of_each_named_type(verdicts, of_all, named):
     assert (not failure(found(*verdicts), ALL)) is of_all
     assert (not failure(found(*verdicts), NAMED)) is named
-
-
-def test_mutations_of_a_named_type_need_no_judgement():
-    mutation = a_record(a_test("p/msg/T", system="ts1"), verdict=SILENT)
-    mutating = replace(NAMED, mutations=1)
-    assert not failure([*found(PASSED), mutation], mutating)
-    # In contrast to other tests of the same run, and to definitions.
-    assert failure([*found(PASSED, SILENT), mutation], mutating)
-    assert failure([*found(PASSED), mutation], NAMED)
-    assert failure([mutation], mutating)
 
 
 @pytest.fixture

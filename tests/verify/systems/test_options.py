@@ -22,7 +22,6 @@ from firm_hdl.verify.ts1.oracles import ORACLES
         ({}, False, True),
         ({"types": ("p/A",)}, True, False),
         ({"node": "node.yaml"}, True, True),
-        ({"types": ("p/A",), "mutations": 9}, True, False),
         ({"bags": ("run.bag",)}, False, False),
         ({"share_circuits": False}, False, False),
         ({"types": ("p/A",), "share_circuits": True}, True, True),

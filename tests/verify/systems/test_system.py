@@ -17,7 +17,6 @@ from firm_hdl.verify.systems.system import (
     kept,
     recorded,
     run_tests,
-    shares_of,
 )
 from tests.verify.report.samples import a_record, a_test
 
@@ -113,23 +112,6 @@ def test_records_are_kept_in_a_file_and_are_not_made_again(tmp_path, capsys):
     assert capsys.readouterr().out == f"2 of 3 things have a result in {path}\nline of p/C\n"
     # Without a file, all are made.
     assert len(kept(TESTS, None, run, lines_of, label="")) == 3 and made[2:] == [TESTS]
-
-
-@pytest.mark.parametrize(
-    ("items", "most", "parts", "sizes"),
-    [
-        (0, 4, 2, []),
-        (1, 4, 2, [1]),
-        (7, 4, 2, [3, 3, 1]),
-        (9, 4, 2, [4, 4, 1]),
-        (40, 4, 2, [4] * 10),
-        (3, 1, 1, [1, 1, 1]),
-    ],
-)
-def test_shares_have_all_items_in_their_order(items, most, parts, sizes):
-    found = shares_of(range(items), most, parts)
-    assert [len(share) for share in found] == sizes
-    assert [item for share in found for item in share] == list(range(items))
 
 
 def fails_often(context, test):

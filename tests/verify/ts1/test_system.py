@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shlex
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DISTROS
-from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.oracles import ORACLES
 from firm_hdl.verify.ts1.oracles.oracle import Refused
 from firm_hdl.verify.ts1.system import Ts1, each_distro
-from firm_hdl.verify.ts1.universe import Universe
 from tests.frontend.workspace import make_files
 from tests.verify.ts1.conftest import judged_by, need
 
@@ -138,9 +134,6 @@ def test_a_type_in_a_hidden_package_of_the_workspace_is_told(tmp_path, monkeypat
         ({}, (), "p/srv/S"),
         ({"types": ("p/S", "q/B")}, ("genmsg", "rosbags"),
          "--oracle genmsg --oracle rosbags p/srv/S"),
-        ({"mutations": 1}, (), "--mutations 1 --seed 0 --all"),
-        ({"types": ("p/S", "q/B"), "mutations": 9, "seed": 5}, ("rosbags",),
-         "--oracle rosbags --mutations 1 --seed 5 p/S q/B"),
     ],
 )  # fmt: skip
 def test_the_command_that_repeats_a_test(source, asked, oracles, command):
@@ -148,7 +141,7 @@ def test_the_command_that_repeats_a_test(source, asked, oracles, command):
     # The others take seconds to start.
     request = Request(distros=("iron",), paths=(source,), oracles=("rosbags",), **asked)
     with Ts1(request) as run:
-        tests = [test for test in run.cases if asked.get("mutations") or test.type == "p/srv/S"]
+        tests = [test for test in run.cases if test.type == "p/srv/S"]
         assert run.command(tests[0], oracles) == f"{words} {command}"
 
 
@@ -165,37 +158,3 @@ def test_oracles_read_the_text_that_we_take(tmp_path):
     verdicts, _, _, run = judged(request, ["genmsg"])
     assert [case.full_name for case in run.cases.values()] == ["p/A", "p/S", "std_msgs/Header"]
     assert verdicts == {("genmsg", "passed"): 3}
-
-
-def test_mutations_have_results_that_a_run_goes_on_with_and_a_report_shows(
-    source, tmp_path, capsys, monkeypatch
-):
-    results = tmp_path / "r.jsonl"
-    words = ["verify", "--systems", "ts1", "--distro", "noetic", "--path", source, "--jobs", "1"]
-    words += ["--oracle", "genmsg", "--mutations", "12", "--seed", "5", "--results", str(results)]
-    need("genmsg", ORACLES["genmsg"](Universe("noetic", (), str(tmp_path))).missing())
-    assert main([*words, "p/A", "q/B"]) == 0
-    found = read_results(results)
-    keys = [test.key for test in found.planned]
-    assert len(set(keys)) == 12 and not found.missing
-    assert [key.rpartition("mutation=")[2] for key in keys] == [str(n) for n in range(5, 17)]
-    assert all("--mutations 1 --seed" in record.command for record in found.records.values())
-    # Recorded results are not judged again.
-    whole = results.read_text().splitlines(keepends=True)
-    cut = [line for line in whole if '"record"' in line][-4:]
-    results.write_text("".join(line for line in whole if line not in cut))
-    asked = []
-    judge = ORACLES["genmsg"].judge
-    monkeypatch.setattr(
-        ORACLES["genmsg"], "judge", lambda self, case: asked.append(case) or judge(self, case)
-    )
-    report = tmp_path / "r.json"
-    assert main([*words, "--report", str(report), "p/A", "q/B"]) == 0
-    assert "8 of 12 mutations have a result in" in capsys.readouterr().out
-    assert {case.is_changed for case in asked} == {True}
-    assert not read_results(results).missing
-    assert json.loads(report.read_text())["counts"]["passed"] == 12
-    # Other definitions make other mutations.
-    (Path(source) / "q" / "msg" / "B.msg").write_text("int8 y\n")
-    assert main([*words, "p/A", "q/B"]) == 1
-    assert "; mutated noetic was" in capsys.readouterr().err

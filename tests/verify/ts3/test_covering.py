@@ -13,8 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from firm_hdl.covering.branches import branches
-from firm_hdl.covering.choose import all_features, cost
+from firm_hdl.covering.choose import all_features
 from firm_hdl.covering.command import read_chosen
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
@@ -27,8 +26,6 @@ from tests.verify.ts3.stand_ins import STAND_INS, stand_in_package
 FOLDER = Path(__file__).parents[1] / "covering"
 DISTROS = ("lyrical", "noetic")
 KEPT = {distro: read_chosen(FOLDER / f"{distro}.txt") for distro in DISTROS}
-# The branches of the generator for all types take a minute; `make cover` checks them.
-STRIDE = 20
 # One case of each mode.
 MOST_CASES = 5
 # Only the plan is judged in `make test`. Other types and `STAND_INS` have the same features in less
@@ -158,26 +155,3 @@ def test_a_type_that_is_left_out_is_missed(distro):
     left = missing(distro, [each for each in KEPT[distro] if each != name])
     families = {feature.partition(":")[0] for feature in left}
     assert {"definition", "plan"} <= families
-
-
-def not_taken(library, wanted, kept):
-    """Remove the branches that types take, small types first; return the branches that are left."""
-    left = set(wanted)
-    plans = sorted((planned(library, name) for name in kept), key=lambda both: cost(both[1]))
-    for message, plan in plans:
-        if not left:
-            break
-        left -= branches(message, plan)
-    return left
-
-
-@pytest.mark.thorough
-@pytest.mark.parametrize("distro", DISTROS)
-def test_other_types_take_no_branch_that_the_kept_do_not(distro):
-    library = Library(distro)
-    others = library.names()[::STRIDE]
-    taken = set().union(*(branches(*planned(library, name)) for name in others))
-    assert len(taken) > 1000
-    assert not_taken(library, taken, KEPT[distro]) == set(), "choose again: make cover"
-    # Must-fail twin: a few of the types do not take all branches.
-    assert not_taken(library, taken, KEPT[distro][-8:-5])

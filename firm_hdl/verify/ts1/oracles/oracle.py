@@ -33,18 +33,12 @@ Answer: TypeAlias = "Accepted | Refused | NotJudged"
 
 
 class Oracle(ABC):
-    """A reader of definitions that shares no code with ours.
-
-    Attributes
-    ----------
-    languages : mapping of str to set of str
-        The languages that it reads, for each dialect: ``msg``, ``srv``, ``action``, ``idl``.
-    judges_changes : bool
-        Whether it is asked about mutations, which mostly have mistakes.
-    """
+    """A reader of definitions that shares no code with ours."""
 
     name: ClassVar[str]
+    # The languages that it reads, for each dialect: `msg`, `srv`, `action`, `idl`.
     languages: ClassVar[Mapping[Dialect, frozenset[str]]]
+    # Whether it is asked about changed texts, which mostly have mistakes.
     judges_changes: ClassVar[bool] = True
 
     def __init__(self, universe: Universe) -> None:

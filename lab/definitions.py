@@ -1,19 +1,31 @@
-"""Definitions with small mistakes, made by rules from real definitions.
+"""Definitions with small mistakes, given to ROS's own readers: do they and firm-hdl agree on each?
 
-A mutation depends only on its number and on the definitions to choose from. So a report can name a
-mutation, and everybody can reproduce it.
+``python -m lab.definitions --distro noetic --path my_ws/src -n 1000`` changes real definitions by
+rules, which drop, double and swap characters and words, and change types, names, values and lines.
+A change depends only on its number and on the definitions to choose from: ``--seed S -n 1`` makes
+that of the number S again.
 """
 
 from __future__ import annotations
 
+import argparse
+import difflib
 import random
 import re
+import sys
+from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import replace
+from tempfile import TemporaryDirectory
 
-from firm_hdl.verify.ts1.universe import DefinitionCase
+from firm_hdl.frontend import DISTROS
+from firm_hdl.verify.results.verdict import Failed
+from firm_hdl.verify.ts1.judge import judge, read
+from firm_hdl.verify.ts1.oracles import ORACLES
+from firm_hdl.verify.ts1.universe import DefinitionCase, Universe, write_definitions
 
-__all__ = ["mutate", "mutation"]
+__all__ = ["main", "mutate", "mutation"]
 
 _MOST_CHARACTERS = 20_000
 _SIGNS = [*"=#\"'\\/<>[](){}:;,.-+_@ \t~é\x0b", *"<= [] [3] [<=2] ---".split(), "  ", " = "]
@@ -165,3 +177,50 @@ _RULES: tuple[_Rule, ...] = (
     _lines,
     _tokens,
 )
+
+
+def _changes(case: DefinitionCase) -> list[str]:
+    """Return the lines that a change has removed (``-``) and added (``+``)."""
+    before = (case.before or "").splitlines()
+    lines = list(difflib.unified_diff(before, case.text.splitlines(), lineterm="", n=0))
+    return [repr(line)[1:-1] for line in lines[2:] if not line.startswith("@@")]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Judge changed definitions; the exit status is 1 if a reader and firm-hdl differ."""
+    parser = argparse.ArgumentParser(prog="lab.definitions", description=__doc__.split("\n")[0])
+    parser.add_argument("types", nargs="*", help="definitions to change; default: all")
+    parser.add_argument("--distro", choices=list(DISTROS), default="lyrical")
+    parser.add_argument("--path", action="append", default=[])
+    parser.add_argument("--oracle", action="append", choices=list(ORACLES))
+    parser.add_argument("-n", type=int, default=1000, help="number of changed definitions")
+    parser.add_argument("--seed", type=int, default=0, help="number of the first one")
+    given = parser.parse_args(arguments)
+    counts: Counter[str] = Counter()
+    with ExitStack() as stack:
+        folder = stack.enter_context(TemporaryDirectory(prefix="firm-hdl-lab-"))
+        universe = Universe(given.distro, given.path, folder)
+        write_definitions(universe)
+        originals = universe.select(given.types)
+        oracles = [ORACLES[name](universe) for name in given.oracle or ORACLES]
+        for oracle in oracles:
+            stack.callback(oracle.close)
+        usable = [each for each in oracles if each.missing() is None]
+        for number in range(given.seed, given.seed + given.n):
+            case = mutation(originals, number)
+            ours = read(universe, case)
+            for oracle in usable:
+                if (found := judge(universe, oracle, case, ours)) is None:
+                    continue
+                counts[f"{found.verdict.name} by {oracle.name}"] += 1
+                counts[f"refused by both, {oracle.name}"] += found.is_refused
+                if isinstance(found.verdict, Failed):
+                    lines = [*_changes(case), *found.verdict.failures]
+                    print(f"--seed {number}: {case.full_name}, {oracle.name}", *lines, sep="\n    ")
+    for what, count in sorted(counts.items()):
+        print(f"{count:7} {what}")
+    return 1 if any(what.startswith(Failed.name) for what in counts) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,4 +1,4 @@
-"""Tracing of the branches that code takes."""
+"""The branches that code takes, and types that take them all."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from firm_hdl import load_message
-from firm_hdl.covering.branches import branches, traced
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
+from lab.covering import branches, main, traced
 
 HERE = Path(__file__).parent
 # Modules inside of converters, and one inside of another one.
@@ -50,7 +50,7 @@ def count(most):
 def test_a_branch_is_named_by_file_function_and_both_of_its_lines(function, argument, steps):
     first = function.__code__.co_firstlineno
     found = traced(lambda: function(argument), [HERE])
-    head = f"test_branches.py {function.__name__}:"
+    head = f"test_covering.py {function.__name__}:"
     assert {name for name in found if name.startswith(head)} == {
         f"{head}{first + start}->{first + end}" for start, end in steps
     }
@@ -82,3 +82,14 @@ def test_types_differ_by_what_the_generator_does_for_them():
     assert boolean == branches(
         load_message("std_msgs/msg/Bool"), build_plan(lay_out(load_message("std_msgs/msg/Bool")))
     )
+
+
+def test_the_chosen_types_take_all_branches_and_fewer_do_not(tmp_path, capsys):
+    names = ["std_msgs/msg/Bool", "std_msgs/msg/Int8", "std_msgs/msg/String"]
+    file = tmp_path / "chosen.txt"
+    assert main([*names, "--out", str(file)]) == 0
+    assert "std_msgs/msg/String\n" in file.read_text()
+    assert main([*names, "--check", str(file)]) == 0
+    file.write_text("std_msgs/msg/Bool\n")
+    assert main([*names, "--check", str(file)]) == 1
+    assert "branch: gateware/" in capsys.readouterr().out
