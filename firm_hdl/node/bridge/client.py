@@ -61,7 +61,13 @@ class Client:
     def open(self) -> Client:
         """Open the board, once, and wait until it has answered; return the client."""
         self._thread.start()
-        if not self._graph.changed.wait(self._ready_seconds):
+        try:
+            has_changed = self._graph.changed.wait(self._ready_seconds)
+        except KeyboardInterrupt:
+            # A simulation may be compiled for minutes.
+            self.bridge.stop()
+            raise
+        if not has_changed:
             self.close()
             raise TimeoutError(f"the board {self.bridge.board.name} does not answer")
         self._check()
@@ -74,9 +80,10 @@ class Client:
         self.close()
 
     def close(self) -> None:
-        """Close the board."""
+        """Close the board; may be called at any time, and again."""
         self.bridge.stop()
-        self._thread.join()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     def _run(self) -> None:
         try:

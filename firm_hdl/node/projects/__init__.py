@@ -1,9 +1,7 @@
 """Projects that put a node into a chip beside its processor: a block design of Vivado, and Linux.
 
-Names of cells, pins and properties are those of PG021 (AXI DMA), PG201 (Zynq UltraScale+ MPSoC
-Processing System), PG082 (Processing System 7) and PG247 (SmartConnect). What Linux and ``xmutil``
-take is in the manuals of dfx-mgr and in AMD's firmware of the Kria. No tool of AMD has read what is
-written here.
+What Linux and ``xmutil`` take is in the manual of dfx-mgr and in AMD's firmware of the Kria. No
+tool of AMD has read what is written here.
 """
 
 from __future__ import annotations
