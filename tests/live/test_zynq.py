@@ -29,12 +29,14 @@ distro: jazzy
 link: axi_dma
 accelerator: firm_hdl.node.loop:Loop
 subscribe:
-  /imu_in: {type: sensor_msgs/msg/Imu, history: keep_all}
-  /cloud_in: {type: sensor_msgs/msg/PointCloud2, history: keep_all, memory_bytes: 524288}
+  /imu_in: {type: sensor_msgs/msg/Imu, history: keep_all, when_full: wait}
+  /cloud_in:
+    {type: sensor_msgs/msg/PointCloud2, history: keep_all, when_full: wait, memory_bytes: 524288}
 publish:
   /imu_out: {type: sensor_msgs/msg/Imu, history: keep_all}
   /cloud_out: {type: sensor_msgs/msg/PointCloud2, history: keep_all, memory_bytes: 524288}
 """
+"""With `wait`, the node holds the DMA while it is behind: a simulation is slow."""
 
 
 @pytest.fixture(scope="module")
