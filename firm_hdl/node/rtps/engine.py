@@ -221,11 +221,17 @@ class Engine(wiring.Component):
         self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
         self._known, self._accepts = Signal(), Signal()
         self._last, self._gone, self._lower = Signal(32), Signal(32), Signal(32)
+        # Whether the sample `_number` was written; and whether it is not there, or not for the row.
+        self._is_written, self._is_gone = Signal(), Signal()
         # A scan of a memory: the address, that of the word, and whether word and row are there.
         self._at, self._at_word = Signal(range(rows + 1)), Signal(range(rows + 1))
         self._has_word, self._has_row = Signal(), Signal()
         self._key, self._hit, self._second = Signal(32), Signal(), Signal()
         self._target, self._patience = Signal(32), Signal(range(_MOST_PATIENCE + 1))
+        # How far the numbers of an event are ahead of the row's `next`, and whether its `end` is
+        # not behind the first one: differences that several states need.
+        self._ahead, self._last_ahead = Signal(signed(33)), Signal(signed(33))
+        self._is_unknown = Signal()
         self._free, self._has_free = Signal(range(rows)), Signal()
         # Which peers there are; which are matched, have acknowledged a sample, have to be told.
         self._live, self._matched, self._due = Signal(peers), Signal(peers), Signal(peers)
@@ -282,6 +288,8 @@ class Engine(wiring.Component):
             self.histories.writer.eq(row.local - _FIXED_WRITERS),
             self.histories.number.eq(self._number),
             self.histories.free.eq(self._freed),
+            self._is_written.eq(self._number <= self._last),
+            self._is_gone.eq(self._number < self._lower),
         ]
 
     def _fixed_prefix(self) -> int:
@@ -464,6 +472,11 @@ class Engine(wiring.Component):
                 ]
 
         with m.State("FOUND"):
+            m.d.sync += [
+                self._ahead.eq(event.number - row.next),
+                self._last_ahead.eq(event.last - row.next),
+                self._is_unknown.eq(event.number >= row.end),
+            ]
             with m.If(self._second):
                 m.next = "MATCH"
             with m.Elif(~self._hit | (row.writes != is_answer)):
@@ -583,12 +596,12 @@ class Engine(wiring.Component):
 
     def _listening(self, m: Module) -> None:
         event, row, assembly = self.events.payload, self._row, self.assembly
-        number, target = event.number, self._target
+        number, target, ahead = event.number, self._target, self._ahead
         is_sedp = self._row_at < self.first_row
         with m.State("HEARTBEAT"):
             m.d.sync += [target.eq(number), row.synced.eq(row.synced | row.reliable)]
             m.next = "HEARTBEAT_END"
-            with m.If(row.reliable & (number > row.next)):
+            with m.If(row.reliable & (ahead > 0)):
                 # What the writer no longer has is lost.
                 m.d.comb += self.lost.eq(row.synced)
                 m.next = "ADVANCE"
@@ -605,16 +618,14 @@ class Engine(wiring.Component):
             # 8.3.8.4: from `number` to below `last`, and the bits from `last` on.
             m.d.sync += target.eq(event.last)
             m.next = "STORE_EVENT"
-            with m.If(row.reliable & (number <= row.next) & (event.last >= row.next)):
+            with m.If(row.reliable & (ahead <= 0) & (self._last_ahead >= 0)):
                 m.next = "ADVANCE"
 
         with m.State("SAMPLE"):
-            is_new, ahead = number >= row.next, Signal(32)
-            is_fragment = event.kind == EventKind.FRAGMENT
+            is_new, is_fragment = ahead >= 0, event.kind == EventKind.FRAGMENT
             takes, bit, is_busy = Signal(), Signal(32), Signal()
             user = (row.local - _FIXED_READERS)[: len(row.local)]
             m.d.comb += [
-                ahead.eq(number - row.next),
                 bit.eq(Const(1 << 31, 32) >> ahead[:5]),
                 takes.eq(Mux(row.reliable, row.synced & (ahead == 0), is_new)),
                 is_busy.eq(~is_sedp & ~is_fragment & ~self.idle.bit_select(user, 1)),
@@ -649,21 +660,24 @@ class Engine(wiring.Component):
                 m.d.sync += row.ask.eq(row.ask | (row.timer == 0))
             with m.Elif(~is_new & ~is_fragment):
                 m.d.comb += self.late.eq(1)
-            with m.If((takes | (is_new & row.synced)) & (number >= row.end)):
+            with m.If((takes | (is_new & row.synced)) & self._is_unknown):
                 m.d.sync += row.end.eq(number + 1)
 
         with m.State("ADVANCE"):
+            # From `next` to `target`, or to the sample before it.
             step, shifted = Signal(32), Signal(32)
             m.d.comb += [
-                step.eq(target - row.next),
+                step.eq(ahead),
                 shifted.eq(Mux(step < 32, row.request << step[:5], 0)),
             ]
-            m.d.sync += [
-                row.next.eq(target),
-                row.tries.eq(0),
-                row.request.eq(shifted | Mux(event.kind == EventKind.GAP, event.bits, 0)),
-            ]
+            m.d.sync += [row.next.eq(target), row.tries.eq(0), row.request.eq(shifted << 1)]
             m.next = "SETTLE"
+            with m.Switch(event.kind):
+                with m.Case(EventKind.HEARTBEAT):
+                    m.d.sync += row.request.eq(shifted)
+                with m.Case(EventKind.GAP):
+                    m.d.comb += step.eq(self._last_ahead)
+                    m.d.sync += row.request.eq(shifted | event.bits)
         with m.State("SETTLE"):
             with m.If(row.request[31]):
                 m.d.sync += [row.request.eq(row.request << 1), row.next.eq(row.next + 1)]
@@ -833,6 +847,7 @@ class Engine(wiring.Component):
                 m.next = "STORE"
         with m.State("ROW_LOWER"):
             m.d.sync += self._lower.eq(Mux(row.first > self._gone, row.first, self._gone + 1))
+            m.d.sync += self._number.eq(Mux(row.request == 0, row.end, row.base))
             with m.If(self._tick_pass & ~self._in_event):
                 silent = Mux(row.silent == _MOST_SILENT, row.silent, row.silent + 1)
                 m.d.sync += row.silent.eq(Mux(row.next <= self._last, silent, 0))
@@ -841,6 +856,7 @@ class Engine(wiring.Component):
                 m.next = "WRITES"
             if self.cuts:
                 with m.If(self._in_event):
+                    m.d.sync += self._number.eq(self.events.payload.number)
                     m.next = "NACK_FRAG"
         self._writes_state(m)
         self._listens_state(m)
@@ -865,7 +881,7 @@ class Engine(wiring.Component):
 
     def _writes_state(self, m: Module) -> None:
         """Serve a reader (8.4.9): samples that it asks for, new ones, heartbeats."""
-        row = self._row
+        row, number = self._row, self._number
         with m.State("WRITES"):
             m.d.sync += [
                 self._from.eq(self._lower),
@@ -877,9 +893,9 @@ class Engine(wiring.Component):
             m.next = "NEXT"
             with m.If(row.request != 0):
                 m.next = "REPAIR"
-            with m.Elif(row.end <= self._last):
-                m.d.sync += [self._clean.eq(0), self._number.eq(row.end)]
-                with m.If(row.end < self._lower):
+            with m.Elif(self._is_written):
+                m.d.sync += self._clean.eq(0)
+                with m.If(self._is_gone):
                     m.d.sync += row.end.eq(self._lower)
                     m.next = "STORE"
                 with m.Else():
@@ -902,18 +918,21 @@ class Engine(wiring.Component):
                     m.d.sync += row.ask.eq(row.reliable & (row.next <= self._last))
 
         with m.State("REPAIR"):
+            # `number` is that of the highest bit.
             m.d.sync += [row.request.eq(row.request << 1), row.base.eq(row.base + 1)]
             with m.If(row.request == 0):
                 m.next = "STORE"
-            with m.If(row.request[31]):
+            with m.Elif(~row.request[31]):
+                m.d.sync += number.eq(row.base + 1)
+            with m.Else():
                 # The heartbeat that is due after the last one tells what is missing then.
-                m.d.sync += [self._number.eq(row.base), row.ask.eq(1)]
+                m.d.sync += row.ask.eq(1)
                 m.next = "FETCH"
-                with m.If(row.base > self._last):
+                with m.If(~self._is_written):
                     m.d.sync += row.request.eq(0)
                     m.next = "STORE"
-                with m.Elif(row.base < self._lower):
-                    m.d.sync += [self._from.eq(row.base), self._to.eq(self._lower)]
+                with m.Elif(self._is_gone):
+                    m.d.sync += [self._from.eq(number), self._to.eq(self._lower)]
                     m.d.sync += row.request.eq(0)
                     self._send(m, Job.GAP)
 
@@ -1076,14 +1095,13 @@ class Engine(wiring.Component):
         with m.State("NACK_FRAG"):
             fragment = event.last - 1
             m.d.sync += [
-                self._number.eq(event.number),
                 self._fragment.eq(fragment),
                 self._wanted.eq(event.bits << 1),
                 row.tries.eq(0),
                 row.ask.eq(row.reliable),
             ]
             m.next = "STORE_EVENT"
-            is_there = (event.number >= self._lower) & (event.number <= self._last)
+            is_there = self._is_written & ~self._is_gone
             with m.If(is_there & (event.last != 0) & (fragment < self.memory_bytes // size)):
                 m.next = "FETCH"
         with m.State("FRAGMENT"):
