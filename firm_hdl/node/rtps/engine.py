@@ -123,6 +123,7 @@ class Engine(wiring.Component):
     ):
         self.description, self.templates = description, templates
         self.writers, self.readers, self.parts = writers, readers, parts
+        self.serves = any(each.is_service for each in writers)
         self.memory_bytes = bytes_of(parts)
         self.address_bits = ceil_log2(self.memory_bytes)
         link = description.link
@@ -215,7 +216,8 @@ class Engine(wiring.Component):
         self._row = row = Signal(row_layout(peers, endpoints))
         self._rows = _memory(m, "rows", row.shape(), rows)
         self._peers = _memory(m, "peers", peer_layout(), peers)
-        self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
+        if self.serves:
+            self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
         # The row and the participant that are worked on, and what is known of our writer.
         self._row_at = Signal(range(rows))
         self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
@@ -597,7 +599,8 @@ class Engine(wiring.Component):
     def _listening(self, m: Module) -> None:
         event, row, assembly = self.events.payload, self._row, self.assembly
         number, target, ahead = event.number, self._target, self._ahead
-        is_sedp = self._row_at < self.first_row
+        is_sedp, is_gap = self._row_at < self.first_row, event.kind == EventKind.GAP
+        shifts = Signal(6)
         with m.State("HEARTBEAT"):
             m.d.sync += [target.eq(number), row.synced.eq(row.synced | row.reliable)]
             m.next = "HEARTBEAT_END"
@@ -664,20 +667,18 @@ class Engine(wiring.Component):
                 m.d.sync += row.end.eq(number + 1)
 
         with m.State("ADVANCE"):
-            # From `next` to `target`, or to the sample before it.
-            step, shifted = Signal(32), Signal(32)
-            m.d.comb += [
-                step.eq(ahead),
-                shifted.eq(Mux(step < 32, row.request << step[:5], 0)),
-            ]
-            m.d.sync += [row.next.eq(target), row.tries.eq(0), row.request.eq(shifted << 1)]
+            # A sample of a reliable writer is the next one, and best-effort ones have no requests.
+            step = Mux(is_gap, self._last_ahead, Mux(event.kind == EventKind.HEARTBEAT, ahead, 1))
+            m.d.sync += [row.next.eq(target), row.tries.eq(0), shifts.eq(Mux(step < 32, step, 32))]
             m.next = "SETTLE"
-            with m.Switch(event.kind):
-                with m.Case(EventKind.HEARTBEAT):
-                    m.d.sync += row.request.eq(shifted)
-                with m.Case(EventKind.GAP):
-                    m.d.comb += step.eq(self._last_ahead)
-                    m.d.sync += row.request.eq(shifted | event.bits)
+            with m.If(is_gap | (row.request != 0)):
+                m.next = "SHIFT"
+        with m.State("SHIFT"):
+            with m.If((shifts != 0) & (row.request != 0)):
+                m.d.sync += [row.request.eq(row.request << 1), shifts.eq(shifts - 1)]
+            with m.Else():
+                m.d.sync += row.request.eq(row.request | Mux(is_gap, event.bits, 0))
+                m.next = "SETTLE"
         with m.State("SETTLE"):
             with m.If(row.request[31]):
                 m.d.sync += [row.request.eq(row.request << 1), row.next.eq(row.next + 1)]
@@ -708,16 +709,17 @@ class Engine(wiring.Component):
 
         with m.State("DELIVER"):
             # The tag of a request leads to its identity, which the reply has to name.
-            named = event.has_related & (event.related != 0)
-            word = self._identities.write_word
-            m.d.comb += [
-                self._identities.writes.eq(1),
-                self._identities.write_at.eq(self.tag + 1),
-                word.tag.eq(self.tag + 1),
-                word.peer.eq(self._peer),
-                word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
-                word.number.eq(number),
-            ]
+            if self.serves:
+                named = event.has_related & (event.related != 0)
+                word = self._identities.write_word
+                m.d.comb += [
+                    self._identities.writes.eq(1),
+                    self._identities.write_at.eq(self.tag + 1),
+                    word.tag.eq(self.tag + 1),
+                    word.peer.eq(self._peer),
+                    word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
+                    word.number.eq(number),
+                ]
             topics = [each.topic.id for each in self.readers if each.topic]
             m.d.sync += [
                 self.topic.eq(_at(topics, row.local - _FIXED_READERS)),
@@ -772,7 +774,7 @@ class Engine(wiring.Component):
             m.next = "DONE"
             is_gone = event.kind == EventKind.ENDPOINT_GONE
             with m.If(is_gone & self._hit & (self._row_at >= self.first_row)):
-                m.d.sync += Value.cast(row).eq(0)
+                m.d.sync += row.valid.eq(0)
                 m.next = "STORE_EVENT"
             with m.Elif(~is_gone & ~self._hit & announced.is_endpoint & self._is_same & fits):
                 m.d.comb += self.unsent.eq(~self._has_free)
@@ -791,7 +793,7 @@ class Engine(wiring.Component):
                 first.eq(self._last + 1 - Mux(replays, Mux(kept > depth, depth, kept), 0)),
             ]
             m.d.sync += [
-                Value.cast(row).eq(0),
+                *(row[name].eq(0) for name in ("request", "synced", "timer", "tries", "silent")),
                 row.valid.eq(1),
                 row.writes.eq(~is_writer),
                 row.peer.eq(self._peer),
@@ -843,7 +845,7 @@ class Engine(wiring.Component):
             ]
             m.next = "ROW_LOWER"
             with m.If(~self._live.bit_select(row.peer, 1)):
-                m.d.sync += Value.cast(row).eq(0)
+                m.d.sync += row.valid.eq(0)
                 m.next = "STORE"
         with m.State("ROW_LOWER"):
             m.d.sync += self._lower.eq(Mux(row.first > self._gone, row.first, self._gone + 1))
@@ -950,8 +952,9 @@ class Engine(wiring.Component):
             ]
             m.d.sync += [
                 self._number.eq(row.next),
-                self._bits.eq(asked),
-                self._bitmap.eq(~row.request & ~(Const(0xFFFF_FFFF, 32) >> asked)),
+                self._to.eq(asked),
+                self._bits.eq(0),
+                self._bitmap.eq(0),
                 self._is_final.eq(row.synced),
             ]
             m.next = "NEXT"
@@ -978,15 +981,16 @@ class Engine(wiring.Component):
                         row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
                         row.tries.eq(row.tries + lacks),
                     ]
-                self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
-                with m.If(lacks & assembly.holds):
-                    m.d.sync += [
-                        self._from.eq(assembly.held.next),
-                        self._to.eq(assembly.held.sample_bytes - assembly.held.place),
-                        self._bits.eq(0),
-                        self._bitmap.eq(0),
-                    ]
+                self._send(m, Job.ACKNACK)
+                with m.If(lacks):
+                    m.d.sync += self._job.eq(Job.ACKNACK_MISSING)
                     m.next = "COUNT"
+                    with m.If(assembly.holds):
+                        m.d.sync += [
+                            self._job.eq(Job.NACK_FRAG),
+                            self._from.eq(assembly.held.next),
+                            self._to.eq(assembly.held.sample_bytes - assembly.held.place),
+                        ]
             with m.Elif(self._tick_pass):
                 m.next = "STORE"
                 with m.If(row.timer != 0):
@@ -995,16 +999,19 @@ class Engine(wiring.Component):
                     m.d.sync += row.ask.eq(row.ask | (row.reliable & (lacks | ~row.synced)))
 
         with m.State("COUNT"):
-            # Of the fragments that make up `_to` bytes, those that one word can name.
-            rest, step = self._to, assembly.held.fragment_bytes
-            m.d.sync += [
-                self._bits.eq(self._bits + 1),
-                self._bitmap.eq(Cat(self._bitmap[1:], 1)),
-                rest.eq(Mux(rest > step, rest - step, 0)),
-            ]
+            # `_to` samples that are missing; or of the fragments that make up `_to` bytes, those
+            # that one word can name.
+            rest, is_part = self._to, self._job == Job.NACK_FRAG
+            step = Mux(is_part, assembly.held.fragment_bytes, 1)
             with m.If((rest == 0) | self._bits[5]):
-                m.d.sync += [self._bits.eq(self._bits), self._bitmap.eq(self._bitmap)]
-                self._send(m, Job.NACK_FRAG)
+                m.d.sync += self._bitmap.eq(self._bitmap & Mux(is_part, ~0, ~row.request))
+                self._send(m, self._job)
+            with m.Else():
+                m.d.sync += [
+                    self._bits.eq(self._bits + 1),
+                    self._bitmap.eq(Cat(self._bitmap[1:], 1)),
+                    rest.eq(Mux(rest > step, rest - step, 0)),
+                ]
 
     # Samples of our writers.
 
@@ -1030,8 +1037,7 @@ class Engine(wiring.Component):
 
     def _sampling(self, m: Module) -> None:
         """Find sample `_number` of the row's writer, and order it, or a GAP in its place."""
-        row, templates = self._row, self.templates
-        identity, sample = self._identity, self._sample
+        row, templates, sample = self._row, self.templates, self._sample
         with m.State("FETCH"):
             firsts = [templates.writers, templates.readers, templates.graph]
             m.d.comb += self.histories.fetches.eq(1)
@@ -1041,21 +1047,29 @@ class Engine(wiring.Component):
                 self._send(m, _at(firsts, row.local) + self._number - 1)
         with m.State("FETCHED"):
             m.d.sync += sample.eq(self.histories.sample)
-            m.next = "IDENTITY"
+            m.next = "FOUND_SAMPLE"
         services = [
             _FIXED_WRITERS - 1 + number
             for number, each in enumerate(self.writers)
             if each.is_service
         ]
+        with m.State("FOUND_SAMPLE"):
+            self._send_sample(m, Job.SAMPLE, Job.FRAGMENT)
+            if services:
+                with m.If(Cat(row.local == each for each in services).any()):
+                    m.next = "IDENTITY"
+        if services:
+            self._replying(m)
+
+    def _replying(self, m: Module) -> None:
+        """Order a reply of a service for who asked, and a GAP for everybody else."""
+        row, identity, sample = self._row, self._identity, self._sample
         with m.State("IDENTITY"):
             m.d.comb += [
                 self._identities.read_at.eq(sample.tag),
                 self._identities.reads.eq(1),
             ]
-            is_reply = Cat(row.local == each for each in services).any() if services else Const(0)
             m.next = "IDENTIFIED"
-            with m.If(~is_reply):
-                self._send_sample(m, Job.SAMPLE, Job.FRAGMENT)
         with m.State("IDENTIFIED"):
             m.d.sync += Value.cast(identity).eq(self._identities.word)
             m.next = "REPLY"
