@@ -230,8 +230,8 @@ class Engine(wiring.Component):
         self._has_word, self._has_row = Signal(), Signal()
         self._key, self._hit, self._second = Signal(32), Signal(), Signal()
         self._target, self._patience = Signal(32), Signal(range(_MOST_PATIENCE + 1))
-        # How far the numbers of an event are ahead of the row's `next`, and whether its `end` is
-        # not behind the first one: differences that several states need.
+        # How far the numbers of an event are ahead of the row's `next`, and whether the first one
+        # is not below its `end`.
         self._ahead, self._last_ahead = Signal(signed(33)), Signal(signed(33))
         self._is_unknown = Signal()
         self._free, self._has_free = Signal(range(rows)), Signal()
@@ -244,6 +244,7 @@ class Engine(wiring.Component):
         self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
+        # How many of the oldest samples of a writer may give way.
         self._freed = Signal(range(MOST_SAMPLES + 1))
         self._tick_due, self._tick_pass, self._second_due = Signal(), Signal(), Signal()
         self._statics = [int(IPv4Address(each)) for each in link.static_peers]
@@ -793,7 +794,8 @@ class Engine(wiring.Component):
                 first.eq(self._last + 1 - Mux(replays, Mux(kept > depth, depth, kept), 0)),
             ]
             m.d.sync += [
-                *(row[name].eq(0) for name in ("request", "synced", "timer", "tries", "silent")),
+                *(row[name].eq(0) for name in ("base", "request", "synced", "timer", "tries")),
+                row.silent.eq(0),
                 row.valid.eq(1),
                 row.writes.eq(~is_writer),
                 row.peer.eq(self._peer),
