@@ -123,6 +123,7 @@ class Engine(wiring.Component):
     ):
         self.description, self.templates = description, templates
         self.writers, self.readers, self.parts = writers, readers, parts
+        self.serves = any(each.is_service for each in writers)
         self.memory_bytes = bytes_of(parts)
         self.address_bits = ceil_log2(self.memory_bytes)
         link = description.link
@@ -215,17 +216,24 @@ class Engine(wiring.Component):
         self._row = row = Signal(row_layout(peers, endpoints))
         self._rows = _memory(m, "rows", row.shape(), rows)
         self._peers = _memory(m, "peers", peer_layout(), peers)
-        self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
+        if self.serves:
+            self._identities = _memory(m, "identities", identity_layout(peers), _REQUESTS)
         # The row and the participant that are worked on, and what is known of our writer.
         self._row_at = Signal(range(rows))
         self._peer, self._peer_row = Signal(range(peers)), Signal(peer_layout())
         self._known, self._accepts = Signal(), Signal()
         self._last, self._gone, self._lower = Signal(32), Signal(32), Signal(32)
+        # Whether the sample `_number` was written; and whether it is not there, or not for the row.
+        self._is_written, self._is_gone = Signal(), Signal()
         # A scan of a memory: the address, that of the word, and whether word and row are there.
         self._at, self._at_word = Signal(range(rows + 1)), Signal(range(rows + 1))
         self._has_word, self._has_row = Signal(), Signal()
         self._key, self._hit, self._second = Signal(32), Signal(), Signal()
         self._target, self._patience = Signal(32), Signal(range(_MOST_PATIENCE + 1))
+        # How far the numbers of an event are ahead of the row's `next`, and whether the first one
+        # is not below its `end`.
+        self._ahead, self._last_ahead = Signal(signed(33)), Signal(signed(33))
+        self._is_unknown = Signal()
         self._free, self._has_free = Signal(range(rows)), Signal()
         # Which peers there are; which are matched, have acknowledged a sample, have to be told.
         self._live, self._matched, self._due = Signal(peers), Signal(peers), Signal(peers)
@@ -236,6 +244,7 @@ class Engine(wiring.Component):
         self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
+        # How many of the oldest samples of a writer may give way.
         self._freed = Signal(range(MOST_SAMPLES + 1))
         self._tick_due, self._tick_pass, self._second_due = Signal(), Signal(), Signal()
         self._statics = [int(IPv4Address(each)) for each in link.static_peers]
@@ -282,6 +291,8 @@ class Engine(wiring.Component):
             self.histories.writer.eq(row.local - _FIXED_WRITERS),
             self.histories.number.eq(self._number),
             self.histories.free.eq(self._freed),
+            self._is_written.eq(self._number <= self._last),
+            self._is_gone.eq(self._number < self._lower),
         ]
 
     def _fixed_prefix(self) -> int:
@@ -464,6 +475,11 @@ class Engine(wiring.Component):
                 ]
 
         with m.State("FOUND"):
+            m.d.sync += [
+                self._ahead.eq(event.number - row.next),
+                self._last_ahead.eq(event.last - row.next),
+                self._is_unknown.eq(event.number >= row.end),
+            ]
             with m.If(self._second):
                 m.next = "MATCH"
             with m.Elif(~self._hit | (row.writes != is_answer)):
@@ -583,12 +599,13 @@ class Engine(wiring.Component):
 
     def _listening(self, m: Module) -> None:
         event, row, assembly = self.events.payload, self._row, self.assembly
-        number, target = event.number, self._target
-        is_sedp = self._row_at < self.first_row
+        number, target, ahead = event.number, self._target, self._ahead
+        is_sedp, is_gap = self._row_at < self.first_row, event.kind == EventKind.GAP
+        shifts = Signal(6)
         with m.State("HEARTBEAT"):
             m.d.sync += [target.eq(number), row.synced.eq(row.synced | row.reliable)]
             m.next = "HEARTBEAT_END"
-            with m.If(row.reliable & (number > row.next)):
+            with m.If(row.reliable & (ahead > 0)):
                 # What the writer no longer has is lost.
                 m.d.comb += self.lost.eq(row.synced)
                 m.next = "ADVANCE"
@@ -605,16 +622,14 @@ class Engine(wiring.Component):
             # 8.3.8.4: from `number` to below `last`, and the bits from `last` on.
             m.d.sync += target.eq(event.last)
             m.next = "STORE_EVENT"
-            with m.If(row.reliable & (number <= row.next) & (event.last >= row.next)):
+            with m.If(row.reliable & (ahead <= 0) & (self._last_ahead >= 0)):
                 m.next = "ADVANCE"
 
         with m.State("SAMPLE"):
-            is_new, ahead = number >= row.next, Signal(32)
-            is_fragment = event.kind == EventKind.FRAGMENT
+            is_new, is_fragment = ahead >= 0, event.kind == EventKind.FRAGMENT
             takes, bit, is_busy = Signal(), Signal(32), Signal()
             user = (row.local - _FIXED_READERS)[: len(row.local)]
             m.d.comb += [
-                ahead.eq(number - row.next),
                 bit.eq(Const(1 << 31, 32) >> ahead[:5]),
                 takes.eq(Mux(row.reliable, row.synced & (ahead == 0), is_new)),
                 is_busy.eq(~is_sedp & ~is_fragment & ~self.idle.bit_select(user, 1)),
@@ -649,21 +664,22 @@ class Engine(wiring.Component):
                 m.d.sync += row.ask.eq(row.ask | (row.timer == 0))
             with m.Elif(~is_new & ~is_fragment):
                 m.d.comb += self.late.eq(1)
-            with m.If((takes | (is_new & row.synced)) & (number >= row.end)):
+            with m.If((takes | (is_new & row.synced)) & self._is_unknown):
                 m.d.sync += row.end.eq(number + 1)
 
         with m.State("ADVANCE"):
-            step, shifted = Signal(32), Signal(32)
-            m.d.comb += [
-                step.eq(target - row.next),
-                shifted.eq(Mux(step < 32, row.request << step[:5], 0)),
-            ]
-            m.d.sync += [
-                row.next.eq(target),
-                row.tries.eq(0),
-                row.request.eq(shifted | Mux(event.kind == EventKind.GAP, event.bits, 0)),
-            ]
+            # A sample of a reliable writer is the next one, and best-effort ones have no requests.
+            step = Mux(is_gap, self._last_ahead, Mux(event.kind == EventKind.HEARTBEAT, ahead, 1))
+            m.d.sync += [row.next.eq(target), row.tries.eq(0), shifts.eq(Mux(step < 32, step, 32))]
             m.next = "SETTLE"
+            with m.If(is_gap | (row.request != 0)):
+                m.next = "SHIFT"
+        with m.State("SHIFT"):
+            with m.If((shifts != 0) & (row.request != 0)):
+                m.d.sync += [row.request.eq(row.request << 1), shifts.eq(shifts - 1)]
+            with m.Else():
+                m.d.sync += row.request.eq(row.request | Mux(is_gap, event.bits, 0))
+                m.next = "SETTLE"
         with m.State("SETTLE"):
             with m.If(row.request[31]):
                 m.d.sync += [row.request.eq(row.request << 1), row.next.eq(row.next + 1)]
@@ -694,16 +710,17 @@ class Engine(wiring.Component):
 
         with m.State("DELIVER"):
             # The tag of a request leads to its identity, which the reply has to name.
-            named = event.has_related & (event.related != 0)
-            word = self._identities.write_word
-            m.d.comb += [
-                self._identities.writes.eq(1),
-                self._identities.write_at.eq(self.tag + 1),
-                word.tag.eq(self.tag + 1),
-                word.peer.eq(self._peer),
-                word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
-                word.number.eq(number),
-            ]
+            if self.serves:
+                named = event.has_related & (event.related != 0)
+                word = self._identities.write_word
+                m.d.comb += [
+                    self._identities.writes.eq(1),
+                    self._identities.write_at.eq(self.tag + 1),
+                    word.tag.eq(self.tag + 1),
+                    word.peer.eq(self._peer),
+                    word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
+                    word.number.eq(number),
+                ]
             topics = [each.topic.id for each in self.readers if each.topic]
             m.d.sync += [
                 self.topic.eq(_at(topics, row.local - _FIXED_READERS)),
@@ -758,7 +775,7 @@ class Engine(wiring.Component):
             m.next = "DONE"
             is_gone = event.kind == EventKind.ENDPOINT_GONE
             with m.If(is_gone & self._hit & (self._row_at >= self.first_row)):
-                m.d.sync += Value.cast(row).eq(0)
+                m.d.sync += row.valid.eq(0)
                 m.next = "STORE_EVENT"
             with m.Elif(~is_gone & ~self._hit & announced.is_endpoint & self._is_same & fits):
                 m.d.comb += self.unsent.eq(~self._has_free)
@@ -777,7 +794,8 @@ class Engine(wiring.Component):
                 first.eq(self._last + 1 - Mux(replays, Mux(kept > depth, depth, kept), 0)),
             ]
             m.d.sync += [
-                Value.cast(row).eq(0),
+                *(row[name].eq(0) for name in ("base", "request", "synced", "timer", "tries")),
+                row.silent.eq(0),
                 row.valid.eq(1),
                 row.writes.eq(~is_writer),
                 row.peer.eq(self._peer),
@@ -829,10 +847,11 @@ class Engine(wiring.Component):
             ]
             m.next = "ROW_LOWER"
             with m.If(~self._live.bit_select(row.peer, 1)):
-                m.d.sync += Value.cast(row).eq(0)
+                m.d.sync += row.valid.eq(0)
                 m.next = "STORE"
         with m.State("ROW_LOWER"):
             m.d.sync += self._lower.eq(Mux(row.first > self._gone, row.first, self._gone + 1))
+            m.d.sync += self._number.eq(Mux(row.request == 0, row.end, row.base))
             with m.If(self._tick_pass & ~self._in_event):
                 silent = Mux(row.silent == _MOST_SILENT, row.silent, row.silent + 1)
                 m.d.sync += row.silent.eq(Mux(row.next <= self._last, silent, 0))
@@ -841,6 +860,7 @@ class Engine(wiring.Component):
                 m.next = "WRITES"
             if self.cuts:
                 with m.If(self._in_event):
+                    m.d.sync += self._number.eq(self.events.payload.number)
                     m.next = "NACK_FRAG"
         self._writes_state(m)
         self._listens_state(m)
@@ -865,7 +885,7 @@ class Engine(wiring.Component):
 
     def _writes_state(self, m: Module) -> None:
         """Serve a reader (8.4.9): samples that it asks for, new ones, heartbeats."""
-        row = self._row
+        row, number = self._row, self._number
         with m.State("WRITES"):
             m.d.sync += [
                 self._from.eq(self._lower),
@@ -877,9 +897,9 @@ class Engine(wiring.Component):
             m.next = "NEXT"
             with m.If(row.request != 0):
                 m.next = "REPAIR"
-            with m.Elif(row.end <= self._last):
-                m.d.sync += [self._clean.eq(0), self._number.eq(row.end)]
-                with m.If(row.end < self._lower):
+            with m.Elif(self._is_written):
+                m.d.sync += self._clean.eq(0)
+                with m.If(self._is_gone):
                     m.d.sync += row.end.eq(self._lower)
                     m.next = "STORE"
                 with m.Else():
@@ -902,18 +922,21 @@ class Engine(wiring.Component):
                     m.d.sync += row.ask.eq(row.reliable & (row.next <= self._last))
 
         with m.State("REPAIR"):
+            # `number` is that of the highest bit.
             m.d.sync += [row.request.eq(row.request << 1), row.base.eq(row.base + 1)]
             with m.If(row.request == 0):
                 m.next = "STORE"
-            with m.If(row.request[31]):
+            with m.Elif(~row.request[31]):
+                m.d.sync += number.eq(row.base + 1)
+            with m.Else():
                 # The heartbeat that is due after the last one tells what is missing then.
-                m.d.sync += [self._number.eq(row.base), row.ask.eq(1)]
+                m.d.sync += row.ask.eq(1)
                 m.next = "FETCH"
-                with m.If(row.base > self._last):
+                with m.If(~self._is_written):
                     m.d.sync += row.request.eq(0)
                     m.next = "STORE"
-                with m.Elif(row.base < self._lower):
-                    m.d.sync += [self._from.eq(row.base), self._to.eq(self._lower)]
+                with m.Elif(self._is_gone):
+                    m.d.sync += [self._from.eq(number), self._to.eq(self._lower)]
                     m.d.sync += row.request.eq(0)
                     self._send(m, Job.GAP)
 
@@ -931,8 +954,9 @@ class Engine(wiring.Component):
             ]
             m.d.sync += [
                 self._number.eq(row.next),
-                self._bits.eq(asked),
-                self._bitmap.eq(~row.request & ~(Const(0xFFFF_FFFF, 32) >> asked)),
+                self._to.eq(asked),
+                self._bits.eq(0),
+                self._bitmap.eq(0),
                 self._is_final.eq(row.synced),
             ]
             m.next = "NEXT"
@@ -959,15 +983,16 @@ class Engine(wiring.Component):
                         row.timer.eq(Mux(row.synced, _REPEAT, _GREETING)),
                         row.tries.eq(row.tries + lacks),
                     ]
-                self._send(m, Mux(lacks, Job.ACKNACK_MISSING, Job.ACKNACK))
-                with m.If(lacks & assembly.holds):
-                    m.d.sync += [
-                        self._from.eq(assembly.held.next),
-                        self._to.eq(assembly.held.sample_bytes - assembly.held.place),
-                        self._bits.eq(0),
-                        self._bitmap.eq(0),
-                    ]
+                self._send(m, Job.ACKNACK)
+                with m.If(lacks):
+                    m.d.sync += self._job.eq(Job.ACKNACK_MISSING)
                     m.next = "COUNT"
+                    with m.If(assembly.holds):
+                        m.d.sync += [
+                            self._job.eq(Job.NACK_FRAG),
+                            self._from.eq(assembly.held.next),
+                            self._to.eq(assembly.held.sample_bytes - assembly.held.place),
+                        ]
             with m.Elif(self._tick_pass):
                 m.next = "STORE"
                 with m.If(row.timer != 0):
@@ -976,16 +1001,19 @@ class Engine(wiring.Component):
                     m.d.sync += row.ask.eq(row.ask | (row.reliable & (lacks | ~row.synced)))
 
         with m.State("COUNT"):
-            # Of the fragments that make up `_to` bytes, those that one word can name.
-            rest, step = self._to, assembly.held.fragment_bytes
-            m.d.sync += [
-                self._bits.eq(self._bits + 1),
-                self._bitmap.eq(Cat(self._bitmap[1:], 1)),
-                rest.eq(Mux(rest > step, rest - step, 0)),
-            ]
+            # `_to` samples that are missing; or of the fragments that make up `_to` bytes, those
+            # that one word can name.
+            rest, is_part = self._to, self._job == Job.NACK_FRAG
+            step = Mux(is_part, assembly.held.fragment_bytes, 1)
             with m.If((rest == 0) | self._bits[5]):
-                m.d.sync += [self._bits.eq(self._bits), self._bitmap.eq(self._bitmap)]
-                self._send(m, Job.NACK_FRAG)
+                m.d.sync += self._bitmap.eq(self._bitmap & Mux(is_part, ~0, ~row.request))
+                self._send(m, self._job)
+            with m.Else():
+                m.d.sync += [
+                    self._bits.eq(self._bits + 1),
+                    self._bitmap.eq(Cat(self._bitmap[1:], 1)),
+                    rest.eq(Mux(rest > step, rest - step, 0)),
+                ]
 
     # Samples of our writers.
 
@@ -1011,8 +1039,7 @@ class Engine(wiring.Component):
 
     def _sampling(self, m: Module) -> None:
         """Find sample `_number` of the row's writer, and order it, or a GAP in its place."""
-        row, templates = self._row, self.templates
-        identity, sample = self._identity, self._sample
+        row, templates, sample = self._row, self.templates, self._sample
         with m.State("FETCH"):
             firsts = [templates.writers, templates.readers, templates.graph]
             m.d.comb += self.histories.fetches.eq(1)
@@ -1022,21 +1049,29 @@ class Engine(wiring.Component):
                 self._send(m, _at(firsts, row.local) + self._number - 1)
         with m.State("FETCHED"):
             m.d.sync += sample.eq(self.histories.sample)
-            m.next = "IDENTITY"
+            m.next = "FOUND_SAMPLE"
         services = [
             _FIXED_WRITERS - 1 + number
             for number, each in enumerate(self.writers)
             if each.is_service
         ]
+        with m.State("FOUND_SAMPLE"):
+            self._send_sample(m, Job.SAMPLE, Job.FRAGMENT)
+            if services:
+                with m.If(Cat(row.local == each for each in services).any()):
+                    m.next = "IDENTITY"
+        if services:
+            self._replying(m)
+
+    def _replying(self, m: Module) -> None:
+        """Order a reply of a service for who asked, and a GAP for everybody else."""
+        row, identity, sample = self._row, self._identity, self._sample
         with m.State("IDENTITY"):
             m.d.comb += [
                 self._identities.read_at.eq(sample.tag),
                 self._identities.reads.eq(1),
             ]
-            is_reply = Cat(row.local == each for each in services).any() if services else Const(0)
             m.next = "IDENTIFIED"
-            with m.If(~is_reply):
-                self._send_sample(m, Job.SAMPLE, Job.FRAGMENT)
         with m.State("IDENTIFIED"):
             m.d.sync += Value.cast(identity).eq(self._identities.word)
             m.next = "REPLY"
@@ -1076,14 +1111,13 @@ class Engine(wiring.Component):
         with m.State("NACK_FRAG"):
             fragment = event.last - 1
             m.d.sync += [
-                self._number.eq(event.number),
                 self._fragment.eq(fragment),
                 self._wanted.eq(event.bits << 1),
                 row.tries.eq(0),
                 row.ask.eq(row.reliable),
             ]
             m.next = "STORE_EVENT"
-            is_there = (event.number >= self._lower) & (event.number <= self._last)
+            is_there = self._is_written & ~self._is_gone
             with m.If(is_there & (event.last != 0) & (fragment < self.memory_bytes // size)):
                 m.next = "FETCH"
         with m.State("FRAGMENT"):
