@@ -291,7 +291,7 @@ class Recorder:
 
 
 class Endpoint(Recorder):
-    def __init__(self, description):
+    def __init__(self, description, name=""):
         super().__init__()
         for name, width in [*description.payload, *description.param]:
             setattr(self, name, Recorder(width))
@@ -541,24 +541,29 @@ publish: {{/out: {{type: std_msgs/msg/Empty}}}}
 
 
 @pytest.mark.usefixtures("hollow", "iverilog")
-@pytest.mark.parametrize("link", ["stream", "axi_dma"])
-def test_node_with_a_stream_is_ip(tmp_path, capsys, link):
+@pytest.mark.parametrize(
+    ("tool", "link", "other"), [("litex", "stream", "axi_dma"), ("vivado", "axi_dma", "udp")]
+)
+def test_node_with_a_stream_is_ip(tmp_path, capsys, monkeypatch, tool, link, other):
     file = tmp_path / "demo.yaml"
-    file.write_text(NODE.format(link="udp"))
-    command = ["node", "build", str(file), "--ip", "vivado", "--out", str(tmp_path / "out")]
+    file.write_text(NODE.format(link=other))
+    command = ["node", "build", str(file), "--ip", tool, "--out", str(tmp_path / "out")]
     assert main(command) == 1
     assert f"{file}:2:7: error: IP needs the link 'stream'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     file.write_text(NODE.format(link=link))
     assert main(command) == 0
+    if tool == "litex":
+        module = tmp_path / "out" / "demo" / "demo_litex.py"
+        open_inputs = check_litex(module, monkeypatch)["Node"]
+        assert open_inputs["s_axis_tkeep"] == "255"
+        assert open_inputs["m_axis_subscribe_cmd_data_tready"] == "1"
+        return
     folder = tmp_path / "out" / "demo" / "ip" / "demo"
     found, left = check_ip(folder, tmp_path / "work")
-    if link == "stream":
-        assert found["m_axis"][2]["TDEST"] == "m_axis_tdest"
-    else:
-        # They are ports without an interface.
-        assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
-        left -= {"mm2s_aresetn", "s2mm_aresetn"}
+    # They are ports without an interface.
+    assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
+    left -= {"mm2s_aresetn", "s2mm_aresetn"}
     assert found["s_axis"][2]["TKEEP"] == "s_axis_tkeep"
     assert found["m_axis_subscribe_cmd_data"][2]["TDATA"] == "m_axis_subscribe_cmd_data_tdata"
     assert all(each.startswith(("time_", "counters_")) for each in left)
