@@ -211,7 +211,8 @@ def ip_files(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
     """
     designs = [_for_tool(tool, ip) for ip in designs]
     if tool == "litex":
-        return {f"{name}_litex.py": _litex_module(name, designs)}
+        texts = {file: text for ip in designs for file, text in ip.files.items()}
+        return {**texts, f"{name}_litex.py": _litex_module(name, designs)}
     make = _vivado_files if tool == "vivado" else _quartus_files
     return {
         f"{_FOLDER}/{ip.name}/{file}": text for ip in designs for file, text in make(ip).items()

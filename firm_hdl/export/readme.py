@@ -44,7 +44,7 @@ def write(converters: Converters, sections: Mapping[str, Any]) -> Output:
         script=bench["script"],
         bench=bench["entity"],
         has_registers="registers" in sections,
-        has_ip="ip" in sections,
+        ip=sections["ip"]["tool"] if "ip" in sections else "",
         ports=[*listed, *fields[:_MOST_FIELDS]],
         more=len(fields[_MOST_FIELDS:]),
         contract=list(contract(plan, sections["timing"]["recovery"])),

@@ -167,8 +167,8 @@ def test_a_node_is_built_with_its_options_and_summed_up(monkeypatch, capsys):
     assert main(["node", "build", "n.yaml", *options]) == 0
     assert capsys.readouterr().out == f"current there\n{TOLD}of ('n.yaml', ['a'])\n"
     asked_first, asked_then = asked
-    assert asked_first == (("n.yaml", []), "node_out", False, False, False)
-    assert asked_then == (("n.yaml", ["a"]), "x", True, True, True)
+    assert asked_first == (("n.yaml", []), "node_out", False, False, None)
+    assert asked_then == (("n.yaml", ["a"]), "x", True, True, "vivado")
     assert packets == stimuli(message, plan) * 2
 
 

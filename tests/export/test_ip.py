@@ -1,14 +1,18 @@
-"""IP of Vivado: the schema of IP-XACT, a reader that is not ours, and the script in Tcl."""
+"""IP: the schema of IP-XACT, readers that are not ours, and scripts in Tcl."""
 
 from __future__ import annotations
 
 import json
 import re
+import runpy
 import shutil
 import subprocess
 import sys
+from collections import namedtuple
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import pytest
@@ -17,11 +21,15 @@ from amaranth.lib.fifo import AsyncFIFO
 
 from firm_hdl import rtlil
 from firm_hdl.cli import main
-from firm_hdl.export.build import build
+from firm_hdl.export import ip
+from firm_hdl.export.backend import Converters
+from firm_hdl.export.build import build, plan_of
 from firm_hdl.export.crossings import constraints
 from firm_hdl.export.options import Options
 from firm_hdl.export.parts import build_part, make_part
+from firm_hdl.export.registers import register_maps
 from firm_hdl.frontend import Library
+from tests.export.conftest import hollow_converters
 from tests.tools import need
 
 SPIRIT = "{http://www.spiritconsortium.org/XMLSchema/SPIRIT/1685-2009}"
@@ -170,30 +178,194 @@ def check_ip(folder, work):
         assert listed.startswith("xgui") or (work / "packaged" / listed).is_file()
     # Every port that the XML has is one of the module, and the other way round.
     module = texts(component, "model/views/view/modelName")[0]
-    verilog = next(f.read_text() for f in folder.glob("*.v") if f.stem == module)
-    head = re.search(rf"module {module} \((.*?)\);", verilog, re.S)[1]
-    ports = {
-        (name, way[:-3], int(high or 0))
+    ports = module_ports(folder, module)
+    assert ports == {
+        texts(wire, "name")[0]: (
+            texts(wire, "wire/direction")[0],
+            int((texts(wire, "wire/vector/left") or ["0"])[0]) + 1,
+        )
+        for wire in spirit(component, "model/ports/port")
+    }
+    mapped = [port for _, _, inside, _ in found.values() for port in inside.values()]
+    assert len(set(mapped)) == len(mapped) and {*ports} >= {*mapped}
+    return found, {*ports} - {*mapped}
+
+
+def module_ports(folder, module):
+    """Read direction and width of each port of a module of Verilog."""
+    text = (folder / f"{module}.v").read_text()
+    head = re.search(rf"module {module} \((.*?)\);", text, re.S)[1]
+    return {
+        name: (way[:-3], int(high or 0) + 1)
         for way, high, name in re.findall(
             r"(input|output) (?:wire|reg)?\s*(?:\[(\d+):0\])?\s*(\w+)", head
         )
     }
-    wires = spirit(component, "model/ports/port")
-    assert ports == {
-        (
-            texts(wire, "name")[0],
-            texts(wire, "wire/direction")[0],
-            int((texts(wire, "wire/vector/left") or ["0"])[0]),
-        )
-        for wire in wires
+
+
+# `package` is a command of Tcl, so it would not be unknown.
+PLATFORM_DESIGNER = """\
+proc unknown {args} {puts [join $args \x1f]}
+proc package {args} {puts [join [linsert $args 0 package] \x1f]}
+set quartus(qip_path) .
+"""
+
+
+def check_quartus_ip(folder, work):
+    """Compare a component with its Verilog; return kind and mode of each interface."""
+    name = folder.name
+    sources = f"source {{{folder}/{name}_hw.tcl}}\nsource {{{folder}/{name}.qip}}\n"
+    work.write_text(PLATFORM_DESIGNER + sources)
+    done = subprocess.run([tclsh(), str(work)], capture_output=True, text=True, check=True)
+    calls = [line.split("\x1f") for line in done.stdout.splitlines()]
+    assert calls[0] == ["package", "require", "-exact", "qsys", "16.1"]
+
+    def said(command):
+        return [call[1:] for call in calls if call[0] == command]
+
+    values = {}
+    for kind in ("set_module_property", "set_fileset_property", "set_interface_property"):
+        for *of, key, value in said(kind):
+            assert (*of, key) not in values
+            values[(*of, key)] = value
+    assert values["NAME",] == name and re.fullmatch(r"\d+\.\d+", values["VERSION",])
+    filesets = ["QUARTUS_SYNTH", "SIM_VERILOG"]
+    assert said("add_fileset") == [[each, each, "", ""] for each in filesets]
+    top = values["QUARTUS_SYNTH", "TOP_LEVEL"]
+    assert values["SIM_VERILOG", "TOP_LEVEL"] == top
+    files = [file for file, *_ in said("add_fileset_file")]
+    assert said("add_fileset_file") == [[file, "VERILOG", "PATH", file] for file in files]
+    listed = said("set_global_assignment")
+    assert [*listed, *listed] == [["-name", "VERILOG_FILE", f"./{file}"] for file in files]
+    command = ["iverilog", "-g2005", "-Wall", "-t", "null", "-s", top]
+    subprocess.run([*command, *(str(folder / file) for file in {*files})], check=True)
+    found = {name: (kind, mode) for name, kind, mode in said("add_interface")}
+    for interface, (kind, _) in found.items():
+        clock = values.get((interface, "associatedClock"))
+        reset = values.get((interface, "associatedReset"))
+        assert clock == (None if kind == "clock" else "aclk")
+        assert reset == (None if kind in ("clock", "reset") else "aresetn")
+    assert values["aresetn", "synchronousEdges"] == "BOTH"
+    ports = said("add_interface_port")
+    assert module_ports(folder, top) == {
+        port: (way.removesuffix("put").lower(), int(bits)) for _, port, _, way, bits in ports
     }
-    mapped = [port for _, _, ports, _ in found.values() for port in ports.values()]
-    assert len(set(mapped)) == len(mapped) and {name for name, _, _ in ports} >= {*mapped}
-    return found, {name for name, _, _ in ports} - {*mapped}
+    assert len({port for _, port, *_ in ports}) == len(ports)
+    for interface, port, role, *_ in ports:
+        special = {"aclk": "clk", "aresetn": "reset_n", "irq": "irq"}
+        inside = port if interface == "pins" else port.removeprefix(f"{interface}_")
+        assert role == special.get(interface, inside)
+    return found
 
 
-@pytest.mark.usefixtures("hollow", "iverilog")
-def test_converters_are_ip(tmp_path):
+class Recorder:
+    """A signal of LiteX, or anything else that modules are made of."""
+
+    def __init__(self, *widths, reset=None, **_):
+        self.width = widths[0] if widths and isinstance(widths[0], int) else 1
+        self.reset = reset
+        self.arguments = widths
+
+    def __len__(self):
+        return self.width
+
+    def __getitem__(self, bits):
+        return Recorder(bits.stop)
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        made = Recorder()
+        setattr(self, name, made)
+        return made
+
+    def __call__(self, *_, **__):
+        return Recorder()
+
+    __invert__ = __add__ = __eq__ = __call__
+    __hash__ = object.__hash__
+
+    def __iadd__(self, other):
+        self.arguments = (*self.arguments, other)
+        return self
+
+
+class Endpoint(Recorder):
+    def __init__(self, description, name=""):
+        super().__init__()
+        for name, width in [*description.payload, *description.param]:
+            setattr(self, name, Recorder(width))
+
+
+class AXILite(Recorder):
+    def __init__(self, data_width, address_width):
+        super().__init__()
+        payload = {"addr": address_width, "data": data_width, "strb": data_width // 8, "resp": 2}
+        for channel, names in {"aw": ["addr"], "w": ["data", "strb"], "b": ["resp"]}.items():
+            setattr(self, channel, Endpoint(Description([(n, payload[n]) for n in names], [])))
+        self.ar = Endpoint(Description([("addr", address_width)], []))
+        self.r = Endpoint(Description([("data", data_width), ("resp", 2)], []))
+
+
+class Status(Recorder):
+    def __init__(self, width, **_):
+        super().__init__(width)
+        self.status = Recorder(width)
+
+
+Description = namedtuple("Description", "payload param")
+
+
+def litex_modules(file, monkeypatch):
+    """Run what is written for LiteX; return module, ports and files of each design by its name."""
+    names = {
+        "litex.gen": {"LiteXModule": Recorder},
+        "litex.soc.interconnect": {
+            "axi": SimpleNamespace(AXILiteInterface=AXILite),
+            "stream": SimpleNamespace(Endpoint=Endpoint, EndpointDescription=Description),
+        },
+        "litex.soc.interconnect.csr": {"CSRStatus": Status},
+        "litex.soc.interconnect.csr_eventmanager": dict.fromkeys(
+            ["EventManager", "EventSourceLevel"], Recorder
+        ),
+        "migen": {
+            **dict.fromkeys(["ClockSignal", "If", "ResetSignal", "Signal"], Recorder),
+            "C": lambda value, width: value,
+            "Instance": lambda module, **ports: (module, ports),
+        },
+    }
+    for name, members in names.items():
+        monkeypatch.setitem(sys.modules, name, SimpleNamespace(**members))
+    found = {}
+    for name, design in runpy.run_path(str(file)).items():
+        if name[0] in "DSN" and name != "Signal":
+            sources = []
+            made = design(SimpleNamespace(add_source=sources.append))
+            made.do_finalize()
+            found[name] = (*made.specials.arguments[0], sources)
+    return found
+
+
+def check_litex(file, monkeypatch):
+    """Compare modules of LiteX with their Verilog; return the values of open inputs."""
+    open_inputs = {}
+    for name, (module, ports, sources) in litex_modules(file, monkeypatch).items():
+        assert {port.partition("_")[2]: (port[0], len(each)) for port, each in ports.items()} == {
+            port: (way[0], width)
+            for port, (way, width) in module_ports(file.parent, module).items()
+        }
+        assert all(Path(source).is_file() for source in sources)
+        assert [Path(source).stem for source in sources][-1] == module
+        open_inputs[name] = {
+            port[2:]: str(each.reset) for port, each in ports.items() if each.reset is not None
+        }
+    return open_inputs
+
+
+@pytest.fixture(scope="module")
+def vivado(tmp_path_factory):
+    """Build a type as IP of Vivado; return its folder, and that of the package."""
+    tmp_path = tmp_path_factory.mktemp("ip")
     folder = tmp_path / "test_msgs" / "msg"
     folder.mkdir(parents=True)
     (folder.parent / "package.xml").write_text("<package><name>test_msgs</name></package>")
@@ -201,13 +373,78 @@ def test_converters_are_ip(tmp_path):
     (folder / "T.msg").write_text(
         "bool status\nint8 range\nuint8[3] bytes\nint8 status_field\nfloat32[] m_axis\n"
     )
-    (built,) = build(
-        ["test_msgs/msg/T"],
-        tmp_path / "out",
-        library=Library(paths=[tmp_path]),
-        options=Options(ports="flat", leaf_ports="axis", ip="vivado", registers=True),
+    with pytest.MonkeyPatch.context() as patch:
+        hollow_converters(patch)
+        (built,) = build(
+            ["test_msgs/msg/T"],
+            tmp_path / "out",
+            library=Library(paths=[tmp_path]),
+            options=Options(ports="flat", leaf_ports="axis", ip="vivado", registers=True),
+        )
+    return built, tmp_path
+
+
+NAME = "test_msgs_msg_T_cdr_8"
+
+
+@pytest.mark.usefixtures("iverilog")
+def test_converters_are_ip_of_quartus_and_litex(vivado, tmp_path, monkeypatch):
+    built, package = vivado
+    message = Library(paths=[package]).message("test_msgs/msg/T")
+    texts = {file.name: file.read_text() for file in built.folder.glob("*.v")}
+    plan = plan_of(message, None, 8, 65536)
+    made = Converters(
+        message=message,
+        plan=plan,
+        name=NAME,
+        inputs={"distro": "lyrical"},
+        registers=register_maps(message, plan),
     )
-    name = "test_msgs_msg_T_cdr_8"
+    for tool in ("quartus", "litex"):
+        options = Options(leaf_ports="axis", ip=tool)
+        output = ip.write(replace(made, options=options), texts)
+        for name, text in {**texts, **output.files}.items():
+            (tmp_path / tool / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / tool / name).write_text(text)
+        assert all(
+            (tmp_path / tool / each["component"]).is_file()
+            for each in output.manifest["ip"]["components"]
+        )
+    folder = tmp_path / "quartus" / "ip"
+    found = {
+        each.name.removeprefix(NAME): check_quartus_ip(each, tmp_path / "run.tcl")
+        for each in folder.iterdir()
+    }
+    streams = [f"m_axis_{each}" for each in ("status", "status_2", "range_field", "status_field")]
+    streams += [f"m_axis_{each}" for each in ("bytes_items", "m_axis_length", "m_axis_items")]
+    first = {"aclk": ("clock", "end"), "aresetn": ("reset", "end")}
+    assert found["_deserializer"] == {
+        **first,
+        "s_axis": ("axi4stream", "end"),
+        **dict.fromkeys(streams, ("axi4stream", "start")),
+    }
+    assert found["_serializer_registers"] == {
+        **first,
+        "s_axi": ("axi4lite", "end"),
+        "m_axis": ("axi4stream", "start"),
+        "irq": ("interrupt", "end"),
+    }
+    # All signals of AXI4-Lite.
+    (registers,) = (folder / f"{NAME}_serializer_registers").glob("*_quartus_verilog.v")
+    assert registers.read_text().count(" s_axi_") == 19
+    open_inputs = check_litex(tmp_path / "litex" / f"{NAME}_litex.py", monkeypatch)
+    for way in ("deserializer", "serializer"):
+        xml = built.folder / "ip" / f"{NAME}_{way}" / "component.xml"
+        assert open_inputs[way.title()] == default_values(ElementTree.parse(xml).getroot())
+    assert open_inputs.keys() == {
+        f"{way}{rest}" for way in ("Deserializer", "Serializer") for rest in ("", "Registers")
+    }
+
+
+@pytest.mark.usefixtures("hollow", "iverilog")
+def test_converters_are_ip_of_vivado(vivado, tmp_path):
+    built, package = vivado
+    name = NAME
     found, left = check_ip(built.folder / "ip" / f"{name}_deserializer", tmp_path / "rx")
     assert not left
     axis = "xilinx.com:interface:axis:1.0"
@@ -279,8 +516,8 @@ def test_converters_are_ip(tmp_path):
     # Leaves that are pins are taken, too.
     (built,) = build(
         ["test_msgs/msg/T"],
-        tmp_path / "out",
-        library=Library(paths=[tmp_path]),
+        package / "out",
+        library=Library(paths=[package]),
         options=Options(ports="flat", ip="vivado"),
     )
     component = ElementTree.parse(built.folder / "ip" / f"{name}_deserializer/component.xml")
@@ -288,8 +525,8 @@ def test_converters_are_ip(tmp_path):
     # Without the option, all of it goes, with its folders.
     build(
         ["test_msgs/msg/T"],
-        tmp_path / "out",
-        library=Library(paths=[tmp_path]),
+        package / "out",
+        library=Library(paths=[package]),
         options=Options(ports="flat"),
     )
     assert not (built.folder / "ip").exists()
@@ -304,27 +541,31 @@ publish: {{/out: {{type: std_msgs/msg/Empty}}}}
 
 
 @pytest.mark.usefixtures("hollow", "iverilog")
-@pytest.mark.parametrize("link", ["stream", "axi_dma"])
-def test_node_with_a_stream_is_ip(tmp_path, capsys, link):
+@pytest.mark.parametrize(
+    ("tool", "link", "other"), [("litex", "stream", "axi_dma"), ("vivado", "axi_dma", "udp")]
+)
+def test_node_with_a_stream_is_ip(tmp_path, capsys, monkeypatch, tool, link, other):
     file = tmp_path / "demo.yaml"
-    file.write_text(NODE.format(link="udp"))
-    command = ["node", "build", str(file), "--ip", "vivado", "--out", str(tmp_path / "out")]
+    file.write_text(NODE.format(link=other))
+    command = ["node", "build", str(file), "--ip", tool, "--out", str(tmp_path / "out")]
     assert main(command) == 1
     assert f"{file}:2:7: error: IP needs the link 'stream'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
     file.write_text(NODE.format(link=link))
     assert main(command) == 0
+    if tool == "litex":
+        module = tmp_path / "out" / "demo" / "demo_litex.py"
+        open_inputs = check_litex(module, monkeypatch)["Node"]
+        assert open_inputs["s_axis_tkeep"] == "255"
+        assert open_inputs["m_axis_subscribe_cmd_data_tready"] == "1"
+        return
     folder = tmp_path / "out" / "demo" / "ip" / "demo"
     found, left = check_ip(folder, tmp_path / "work")
-    header = folder.parents[1] / "demo_zynq.hpp"
-    assert header.exists() == (link == "axi_dma")
-    if link == "stream":
-        assert found["m_axis"][2]["TDEST"] == "m_axis_tdest"
-    else:
-        assert "topic_cmd = 1;" in header.read_text()
-        # They are ports without an interface.
-        assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
-        left -= {"mm2s_aresetn", "s2mm_aresetn"}
+    # In the project, not in the IP: a program of the processor includes it.
+    assert "topic_cmd = 1;" in (folder.parents[1] / "demo_zynq.hpp").read_text()
+    # They are ports without an interface.
+    assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
+    left -= {"mm2s_aresetn", "s2mm_aresetn"}
     assert found["s_axis"][2]["TKEEP"] == "s_axis_tkeep"
     assert found["m_axis_subscribe_cmd_data"][2]["TDATA"] == "m_axis_subscribe_cmd_data_tdata"
     assert all(each.startswith(("time_", "counters_")) for each in left)
