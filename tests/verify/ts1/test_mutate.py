@@ -38,7 +38,7 @@ ROS2 = {
     [
         ("noetic", "genmsg", by_depth(40, 250)),
         ("lyrical", "rosidl_adapter", by_depth(40, 250)),
-        ("lyrical", "rosidl_parser", by_depth(60, 100)),
+        ("lyrical", "rosidl_parser", by_depth(30, 100)),
     ],
 )
 def test_oracles_and_we_agree_on_mistakes(tmp_path, distro, oracle, count):
