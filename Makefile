@@ -46,10 +46,10 @@ COMPILED := $(VENV)/.compiled $(VENV)/.compiled-nextpnr
 LIVE_PEERS := $(patsubst tests/live/peers/%.txt,$(VENV)/live/%/.installed,\
   $(wildcard tests/live/peers/*.txt))
 
-# pip takes one processor; what tests need is prepared beside it, rclpy included. Then the linters run
-# beside the tests. The last lines are those of pytest, whatever the linters say.
+# pip takes one processor; what tests need is prepared beside it, system packages and rclpy included.
+# Then the linters run beside the tests. The last lines are those of pytest, whatever the linters say.
 test: ## linters, types and all tests; PYTEST_ARGS=tests/export takes some tests
-	@$(MAKE) --no-print-directory -j $(JOBS) $(COMPILED) oracles-ros2 $(VENV)/live/kilted/.installed
+	@$(MAKE) --no-print-directory -j $(JOBS) $(COMPILED) tools $(VENV)/live/kilted/.installed
 	@mkdir -p build
 	@{ $(MAKE) --no-print-directory lint >build/lint.log 2>&1 \
 	    || { cat build/lint.log >&2; exit 1; }; } & lint=$$!; \
@@ -216,12 +216,15 @@ $(VENV)/live/%/.installed: tests/live/peers/%.txt | $(VENV)/.created
 	  && touch $@; } >$(VENV)/live-$*.log 2>&1 \
 	  || echo "Failed: see $(VENV)/live-$*.log; going on without." >&2
 
+# $(call apt,packages): one process after another, with lists that are at most an hour old.
+apt = { mkdir -p build && flock build/apt.lock sh -c \
+  '{ [ "$$(find build/apt.updated -mmin -60)" ] || { apt-get update && touch build/apt.updated; }; } \
+  && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $(1)'; }
+
 # $(call need,packages,test that they are there)
 need = { $(2); } || { \
   if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
-    echo "Installing $(1) ..."; \
-    { apt-get update && DEBIAN_FRONTEND=noninteractive \
-      apt-get install -y --no-install-recommends $(1); } >/dev/null 2>&1 \
+    echo "Installing $(1) ..."; $(call apt,$(1)) >/dev/null 2>&1 \
       || echo "Failed: apt-get install $(1); going on without." >&2; \
   else \
     echo "Missing, and used by tests: sudo apt-get install $(1)" >&2; \
@@ -273,7 +276,7 @@ $(VENV)/.created:
 	  echo "Install one, or name it: make PYTHON=python3.12 ..." >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
 	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
-	    apt-get update && apt-get install -y --no-install-recommends python3-venv; \
+	    $(call apt,python3-venv); \
 	  else \
 	    echo "Python has no venv; on Debian and Ubuntu: sudo apt-get install python3-venv" >&2; \
 	    exit 1; \

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import json
 
+import pytest
+
 from lab.mutation import main
 from tests.frontend.workspace import make_files
 
 
+@pytest.mark.thorough
 def test_a_fault_is_noticed_or_survives(tmp_path, capsys):
     root, out = tmp_path / "root", tmp_path / "out.jsonl"
     files = {

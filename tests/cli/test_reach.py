@@ -125,29 +125,6 @@ def test_a_gate_gets_the_message_that_its_folders_define(workdir, monkeypatch):
     assert asked == [("gate", "p/msg/A", given)]
 
 
-def test_a_node_is_run_with_all_options(monkeypatch):
-    asked = []
-    monkeypatch.setattr("firm_hdl.node.read_description", lambda file, paths: (file, paths))
-    monkeypatch.setattr(
-        "firm_hdl.node.bridge.command.run_bridge",
-        lambda description, board, **options: asked.append((description, board, options)),
-    )
-    assert main(["node", "run", "n.yaml"]) == 0
-    words = ["--path", "a", "--path", "b", "--board", "udp://h", "--graph", "rtps"]
-    words += ["--domain", "7", "--interface", "lo", "--seconds", "2.5", "--engine", "amaranth"]
-    assert main(["node", "run", "n.yaml", *words, "--quiet"]) == 0
-    usual = {"graph": None, "domain": None, "interface": None, "seconds": None}
-    other = {"graph": "rtps", "domain": 7, "interface": "lo", "seconds": 2.5}
-    assert asked == [
-        (("n.yaml", []), "sim", {**usual, "engine": "auto", "quiet": False, "wave": None}),
-        (
-            ("n.yaml", ["a", "b"]),
-            "udp://h",
-            {**other, "engine": "amaranth", "quiet": True, "wave": None},
-        ),
-    ]
-
-
 def test_a_node_is_built_with_its_options_and_summed_up(monkeypatch, capsys):
     asked = []
     monkeypatch.setattr("firm_hdl.node.read_description", lambda file, paths: (file, paths))

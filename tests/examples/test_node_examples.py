@@ -179,6 +179,7 @@ def test_filter(start):
         assert list(scan.ranges) == want
 
 
+@pytest.mark.thorough
 def test_echo_of_ros_1(start):
     made, topics = start("echo_ros1/echo.yaml")
     texts = [struct.pack("<I", size) + b"x" * size for size in (0, 1, 7, 8, 9, 40)]

@@ -160,6 +160,8 @@ def test_bad_packets_are_reported_and_do_not_affect_the_next(wire, data, case, o
     for packet in data.draw(st.lists(damaged(good), min_size=1, max_size=6)):
         packets += [packet, good]
     transfers, statuses = expected(rx.plan, packets)
+    # Many claimed elements, or no end of them in a narrow bus.
+    assume(sum(map(len, transfers.values())) <= by_depth(1000, 1_000_000))
     seen = Harness(rx, None).run_packets(packets, RunOptions(stalls=stalls, limit=2_000_000))
     assert list(seen.statuses) == statuses
     assert carried(seen.transfers) == transfers

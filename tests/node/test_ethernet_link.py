@@ -43,7 +43,7 @@ def frame(data, *, port=LINK.port):
     return PREAMBLE + checked(whole + bytes(max(0, 60 - len(whole))))
 
 
-@pytest.mark.parametrize("mhz", [125, 50])
+@pytest.mark.parametrize("mhz", [pytest.param(125, marks=pytest.mark.thorough), 50])
 def test_messages_pass_the_pins_both_ways_and_what_is_lost_is_counted(mhz):
     text = TEXT.replace("clock_mhz: 125", f"clock_mhz: {mhz}")
     link = EthernetLink(read_description_text(text, name="n.yaml", library=LIBRARY))

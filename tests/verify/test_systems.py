@@ -56,7 +56,7 @@ def test_every_system_has_a_record_of_each_type_that_can_be_read_back(tmp_path):
     assert [test.key for test in found.planned if test.type == BOOL] == [
         f"ts1 lyrical {BOOL} oracle=rosbags",
         f"ts2 lyrical {BOOL} cdr/4",
-        f"ts3 python lyrical {BOOL} cdr/4 seed=0,cases=2",
+        f"ts3 python lyrical {BOOL} cdr/4 seed=0,cases=2,references=",
     ]
     for record in records:
         if record.test.system == "ts1" and record.test.type == CHAR:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from firm_hdl.bench import Device
 from lab.bench.parts import PARTS, run_parts
 
@@ -9,6 +11,7 @@ NAMES = [f"{part.name}, {part.parameters}" for part in PARTS]
 WIDTH = NAMES.index("`PacketWidth`, 8 to 1 bytes")
 
 
+@pytest.mark.thorough
 def test_a_part_is_mapped(ecp5: Device) -> None:
     (found,) = run_parts(parts=[WIDTH], seeds=(), jobs=1)
     assert found.problem == "" and found.measured is not None

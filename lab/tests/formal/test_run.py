@@ -63,6 +63,7 @@ def test_scenes_have_the_claims_that_are_listed(study):
     Fragment.get(scene, None)
 
 
+@pytest.mark.thorough
 def test_command_says_what_it_found(capsys):
     assert main(["arbiter/turns", "--jobs", "1", "--only-twins"]) == 0
     assert "broken" in capsys.readouterr().out

@@ -17,9 +17,11 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Plan, build_plan
 from firm_hdl.verilog import convert as to_verilog
 from firm_hdl.vhdl import convert as to_vhdl
 from firm_hdl.wire import lay_out
-from tests.depth import by_depth
 from tests.gateware.traffic import random_packets
 from tests.strategies import make
+
+# `tests/equivalence` proves the same of what GHDL synthesizes, beginning at a reset.
+pytestmark = pytest.mark.thorough
 
 TEXT = make("ros2", {"s": "string"}, "Text")
 ROW = make("ros2", {"texts": (TEXT, "[]"), "n": "uint64"}, "Row")
@@ -184,22 +186,15 @@ def compared(
 
 
 @pytest.mark.usefixtures("iverilog")
-@pytest.mark.parametrize(
-    "message",
-    [
-        pytest.param(each, id=name, marks=[] if name == "nested" else [pytest.mark.thorough])
-        for name, each in MESSAGES.items()
-    ],
-)
+@pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
 def test_netlist_of_vhdl_is_the_verilog_in_every_cycle(ghdl, tmp_path, message):
-    printed, count = compared(tmp_path, ghdl, message, by_depth(12, 100))
+    printed, count = compared(tmp_path, ghdl, message, 100)
     found = re.fullmatch(r"(\d+) statuses, (\d+) packets\n", printed)
     assert found, printed[:2000]
     # The reset loses at most one packet.
     assert int(found[1]) >= count - 1 and int(found[2]) >= count // 2
 
 
-@pytest.mark.thorough
 @pytest.mark.usefixtures("iverilog")
 def test_netlist_of_another_circuit_is_found(ghdl, tmp_path):
     """Its limit of a length is smaller."""

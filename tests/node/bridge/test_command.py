@@ -262,31 +262,20 @@ def started(monkeypatch):
     return found
 
 
-@pytest.mark.parametrize(
-    ("options", "board", "graph", "seconds"),
-    [
-        ({}, {"engine": "auto"}, {"domain": None, "interface": None}, None),
-        (
-            {"engine": "verilator"},
-            {"engine": "verilator"},
-            {"domain": None, "interface": None},
-            None,
-        ),
-        ({"domain": 0}, {"engine": "auto"}, {"domain": 0, "interface": None}, None),
-        ({"interface": "lo"}, {"engine": "auto"}, {"domain": None, "interface": "lo"}, None),
-        ({"seconds": 7.5}, {"engine": "auto"}, {"domain": None, "interface": None}, 7.5),
-    ],
-)
-def test_each_option_gets_where_it_belongs(started, options, board, graph, seconds):
-    command.run_bridge(ECHO, "udp://a:1", graph="rtps", **options)
-    assert started["board"] == ("udp://a:1", ECHO, board)
-    assert started["graph"] == ("rtps", ECHO, graph)
-    assert started["seconds"] == seconds
-
-
-def test_the_graph_is_chosen_elsewhere_unless_it_is_named(started):
-    command.run_bridge(ECHO, "udp://a:1")
-    assert started["graph"][0] is None
+def test_each_option_gets_where_it_belongs(started, tmp_path):
+    file = tmp_path / "echo.yaml"
+    file.write_text(echo_text(link="udp"))
+    words = ["node", "run", str(file), "--path", str(PACKAGES), "--board", "udp://a:1"]
+    assert main(words) == 0
+    assert started["board"][::2] == ("udp://a:1", {"engine": "auto"})
+    assert started["graph"][::2] == (None, {"domain": None, "interface": None})
+    assert started["seconds"] is None
+    words += ["--graph", "rtps", "--domain", "7", "--interface", "lo", "--seconds", "2.5"]
+    assert main([*words, "--engine", "amaranth"]) == 0
+    assert started["board"][::2] == ("udp://a:1", {"engine": "amaranth"})
+    assert started["graph"][::2] == ("rtps", {"domain": 7, "interface": "lo"})
+    assert started["seconds"] == 2.5
+    assert {started[each][1].node for each in ("board", "graph")} == {ECHO.node}
 
 
 def test_a_quiet_one_prints_no_figures(started, capsys, monkeypatch):
