@@ -15,8 +15,7 @@ from pathlib import Path
 
 from firm_hdl.arguments import add_bus_bytes, add_jobs
 from firm_hdl.covering.choose import choose, cost, features
-from firm_hdl.equivalence.command import add_timeout, run_proofs
-from firm_hdl.equivalence.converters import ProofTask, both_directions
+from firm_hdl.equivalence.command import ProofTask, add_timeout, both_directions, run_proofs
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES

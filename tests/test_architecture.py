@@ -72,7 +72,7 @@ MAY_IMPORT["node"] = {
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {
-    *("errors", "files", "model", "frontend", "wire", "plan", "export", "terminal"),
+    *("arguments", "errors", "files", "model", "frontend", "wire", "plan", "export", "terminal"),
 }
 # Messages and packets to try, and the oracle that writes them.
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
@@ -95,7 +95,7 @@ MAY_IMPORT["bench"] = {
 MAY_IMPORT["cli"] = {
     *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
     *("names", "model", "frontend", "plan", "timing", "program", "estimates", "export"),
-    *("identity", "metrics", "node", "cases", "covering", "verify", "equivalence", "bench"),
+    *("identity", "metrics", "node", "cases", "verify", "bench"),
 }
 MAY_IMPORT["__main__"] = {"cli"}
 # The public interface of the package.

@@ -15,8 +15,8 @@ from firm_hdl.arguments import (
     positive,
 )
 from firm_hdl.bench.compare import compared
+from firm_hdl.bench.cycles import STATED
 from firm_hdl.bench.devices import DEVICES
-from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Converted, Result, read_results, results_text
 from firm_hdl.bench.run import BenchTask, run_tasks
 from firm_hdl.bench.tables import head, row, summary
@@ -26,12 +26,12 @@ from firm_hdl.frontend import all_names, load_all, open_library
 from firm_hdl.plan import BUS_BYTES, DEFAULT_MAX_MESSAGE_BYTES, DIRECTIONS
 from firm_hdl.terminal import stage
 
-__all__ = ["NO_DEVICE", "add_bench_arguments", "bench_tasks", "run_bench"]
+__all__ = ["NO_DEVICE", "add_bench", "bench_tasks", "run_bench"]
 
 NO_DEVICE = "none"
 
 
-def add_bench_arguments(command: argparse.ArgumentParser) -> None:
+def add_bench(command: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl bench``, besides the origins of definitions."""
     add_types_or_all(command)
     add_wire(command)
@@ -71,6 +71,7 @@ def add_bench_arguments(command: argparse.ArgumentParser) -> None:
     _add_messages(command)
     _add_files(command)
     add_jobs(command)
+    command.set_defaults(run=run_bench)
 
 
 def _add_messages(command: argparse.ArgumentParser) -> None:

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.bench.devices import Area, Device, Placer
-from firm_hdl.bench.netlist import Names, cell_counts, top_module
-from firm_hdl.bench.paths import CriticalPath, critical_path
+from firm_hdl.bench.netlist import CriticalPath, Names, cell_counts, critical_path, top_module
 from firm_hdl.bench.surroundings import surround
 from firm_hdl.bench.tools import BenchError, Tool, find_nextpnr, find_yosys, written
 from firm_hdl.rtlil import without_indices

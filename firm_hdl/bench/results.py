@@ -8,11 +8,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.bench.cycles import Cycles
+from firm_hdl.bench.cycles import Cycles, Stated
 from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.flow import Measured, Placed
-from firm_hdl.bench.messages import Stated
-from firm_hdl.bench.paths import CriticalPath
+from firm_hdl.bench.netlist import CriticalPath
 from firm_hdl.bench.tools import BenchError
 from firm_hdl.files import read_file
 from firm_hdl.plan import Direction

@@ -2,26 +2,66 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from amaranth.back import rtlil
 
-from firm_hdl.bench.cache import measure_once
-from firm_hdl.bench.cycles import Converter, Cycles, count_cycles
-from firm_hdl.bench.devices import DEVICES
-from firm_hdl.bench.flow import Measured
-from firm_hdl.bench.messages import STATED, Stated
-from firm_hdl.bench.results import Converted, Result
+from firm_hdl.bench.cycles import STATED, Converter, Cycles, Stated, count_cycles
+from firm_hdl.bench.devices import DEVICES, Device
+from firm_hdl.bench.flow import PREPARATIONS, Measured, measure
+from firm_hdl.bench.results import Converted, Result, measured_from_json, measured_to_json
+from firm_hdl.bench.tools import versions
 from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.export.build import check_size, plan_of
+from firm_hdl.files import write_file
 from firm_hdl.frontend import open_library
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs import run_each
 from firm_hdl.model import Message
 
-__all__ = ["BenchTask", "run_tasks"]
+__all__ = [
+    "BenchTask",
+    "measure_once",
+    "run_tasks",
+]
+
+
+FORMAT = 1
+"""A part of the key. Change it if the figures of a circuit change for a reason not in the key."""
+
+
+def measure_once(
+    rtlil: str, device: Device, seeds: Sequence[int], *, mapping: str, folder: Path | None
+) -> Measured:
+    """Measure a circuit, unless the folder has its figures. Parameters as for `measure`.
+
+    A file's name is a hash of the RTLIL, the device's options, the seeds, and the versions of the
+    tools. A result without clock rates for all seeds is not kept.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Created if it does not exist; `None`: measure always.
+    """
+    if folder is None:
+        return measure(rtlil, device, seeds, mapping=mapping)
+    # Without seeds, nextpnr is not run, and may be missing.
+    tools = versions(device, with_placer=bool(seeds))
+    parts = [FORMAT, rtlil, repr(device), PREPARATIONS, list(seeds), mapping, tools]
+    key = hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+    file = folder / f"{key}.json"
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        return measured_from_json(json.loads(file.read_text(encoding="utf-8")))
+    found = measure(rtlil, device, seeds, mapping=mapping)
+    if not found.problem:
+        # Another process may write or read the same file.
+        write_file(file, json.dumps(measured_to_json(found)))
+    return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

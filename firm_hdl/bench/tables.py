@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import exp, fsum, log
 
+from firm_hdl.bench.cycles import Stated
 from firm_hdl.bench.devices import Device
-from firm_hdl.bench.messages import Stated
 from firm_hdl.bench.results import Result
 
 __all__ = ["LINE_RATE_MHZ", "beats_per_cycle", "geometric_mean", "head", "row", "summary"]

@@ -8,13 +8,18 @@ all cases. The result says what was left out.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 
 from firm_hdl.cases.directed import more_cases
 from firm_hdl.cases.make import Case, make_cases
 from firm_hdl.cases.oracle import RosbagsOracle
+from firm_hdl.metrics import metrics_of
+from firm_hdl.model import Message
 from firm_hdl.plan import Edge, Plan
+from firm_hdl.plan.edges import edges
+from firm_hdl.plan.shape import shape
 
 __all__ = [
     "LARGE_STRIDE",
@@ -22,12 +27,42 @@ __all__ = [
     "MOST_WORK",
     "all_cases",
     "cases_to_disturb",
+    "digest",
+    "figures",
     "is_large",
     "message_limit",
     "packets_to_simulate",
     "too_large",
     "work_of",
 ]
+
+
+OF_THE_TYPE = ("depth", "types", "leaves", "dynamic_leaves", "min_bytes", "shifting")
+"""Attributes of :class:`firm_hdl.metrics.Metrics`."""
+
+
+def figures(message: Message, plan: Plan, packets: Sequence[bytes]) -> dict[str, float]:
+    """Return figures by name.
+
+    Parameters
+    ----------
+    packets : sequence of bytes
+        The packets of all cases.
+    """
+    of_the_type = metrics_of(message, plan.wire)
+    found: dict[str, float] = {name: getattr(of_the_type, name) for name in OF_THE_TYPE}
+    found["streams"] = len(plan.leaves)
+    found["steps"] = len(plan.steps)
+    found["loop_levels"] = plan.levels
+    found["decisions"] = len(edges(plan))
+    found["case_bytes"] = sum(map(len, packets))
+    return found
+
+
+def digest(plan: Plan) -> str:
+    """Return a digest of the shape of a plan. Plans with equal circuits have equal digests."""
+    return hashlib.sha256(repr(shape(plan)).encode()).hexdigest()[:16]
+
 
 MAX_MESSAGE_BYTES = 1 << 16
 """Small enough that a packet with a length over this limit can be completed in simulation."""

@@ -109,7 +109,7 @@ def add_metrics(command: argparse.ArgumentParser) -> None:
 
 
 def _metrics(args: argparse.Namespace) -> None:
-    from firm_hdl.metrics.command import metrics_text
+    from firm_hdl.metrics.analysis import metrics_text
 
     if args.as_json and args.format not in (None, "json"):
         args.usage_error(f"--json and --format {args.format} exclude each other")

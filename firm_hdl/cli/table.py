@@ -18,8 +18,7 @@ class Command:
     """A command."""
 
     help: str  # Purpose of the command, in one line.
-    # Name of the module of `firm_hdl.cli` with the function `add_NAME`, which adds the arguments
-    # and sets `run`.
+    # Module of `firm_hdl` with the function `add_NAME`, which adds the arguments and sets `run`.
     module: str
     examples: tuple[str, ...] = ()  # Command lines that its help shows.
     # Whether the command takes `--distro`, `--path`, `--bag` and `--depends`.
@@ -31,13 +30,13 @@ class Command:
 
         if self.has_origins:
             add_origins(parser)
-        getattr(import_module(f"firm_hdl.cli.{self.module}"), f"add_{name}")(parser)
+        getattr(import_module(f"firm_hdl.{self.module}"), f"add_{name}")(parser)
 
 
 COMMANDS: dict[str, Command] = {
     "build": Command(
         help="write the converters of message types",
-        module="building",
+        module="cli.building",
         examples=(
             "firm-hdl build geometry_msgs/msg/Twist --bus-bytes 4",
             "firm-hdl build my_msgs/msg/Spot --path src",
@@ -45,7 +44,7 @@ COMMANDS: dict[str, Command] = {
     ),
     "list": Command(
         help="list all messages, services and actions",
-        module="reading",
+        module="cli.reading",
         examples=(
             "firm-hdl list --distro humble",
             "firm-hdl list --path src --only-path",
@@ -53,7 +52,7 @@ COMMANDS: dict[str, Command] = {
     ),
     "show": Command(
         help="print a type as ROS's own tools do",
-        module="reading",
+        module="cli.reading",
         examples=(
             "firm-hdl show sensor_msgs/msg/Imu",
             "firm-hdl show src/my_msgs/msg/Spot.msg",
@@ -61,12 +60,12 @@ COMMANDS: dict[str, Command] = {
     ),
     "plan": Command(
         help="print what converters do in each cycle, as YAML",
-        module="building",
+        module="cli.building",
         examples=("firm-hdl plan geometry_msgs/msg/Twist --bus-bytes 4",),
     ),
     "info": Command(
         help="print how many cycles packets take, and which clock a line rate needs",
-        module="building",
+        module="cli.building",
         examples=(
             "firm-hdl info sensor_msgs/msg/Imu",
             "firm-hdl info sensor_msgs/msg/Imu --json",
@@ -74,7 +73,7 @@ COMMANDS: dict[str, Command] = {
     ),
     "part": Command(
         help="write a part that stores, checks, merges or routes packets",
-        module="parts",
+        module="cli.parts",
         has_origins=False,
         examples=(
             "firm-hdl part gate sensor_msgs/msg/Imu",
@@ -84,7 +83,7 @@ COMMANDS: dict[str, Command] = {
     "node": Command(
         help="write a design with several topics behind one link, print its figures, or run it "
         "in a graph of ROS",
-        module="nodes",
+        module="cli.nodes",
         has_origins=False,
         examples=(
             "firm-hdl node info double.yaml",
@@ -100,7 +99,7 @@ COMMANDS: dict[str, Command] = {
     ),
     "verify": Command(
         help="test converters against ROS's own libraries",
-        module="testing",
+        module="verify.command",
         has_origins=False,
         examples=(
             "firm-hdl verify sensor_msgs/msg/Imu",
@@ -110,7 +109,7 @@ COMMANDS: dict[str, Command] = {
     ),
     "report": Command(
         help="write a report of results of verify, as HTML, Markdown or JSON",
-        module="testing",
+        module="verify.report.formats",
         has_origins=False,
         examples=(
             "firm-hdl verify --all --results all.jsonl",
@@ -119,17 +118,17 @@ COMMANDS: dict[str, Command] = {
     ),
     "prove": Command(
         help="prove that the VHDL is equivalent to Amaranth's circuit",
-        module="testing",
+        module="equivalence.command",
         examples=("firm-hdl prove std_msgs/msg/Header",),
     ),
     "bench": Command(
         help="measure converters on an FPGA: area, clock rate, cycles",
-        module="testing",
+        module="bench.command",
         examples=("firm-hdl bench std_msgs/msg/Header --device ice40",),
     ),
     "golden": Command(
         help="compare plans with golden ones, by meaning",
-        module="testing",
+        module="verify.ts2.golden",
         examples=(
             "firm-hdl golden add plans sensor_msgs/msg/Imu",
             "firm-hdl golden check plans",
@@ -137,34 +136,34 @@ COMMANDS: dict[str, Command] = {
     ),
     "cover": Command(
         help="choose a few types that have every feature",
-        module="testing",
+        module="covering.command",
         examples=("firm-hdl cover --path src --out types.txt",),
     ),
     "doctor": Command(
         help="say which tools, graphs and libraries are here, what they are for, and how to get "
         "the others",
-        module="doctor",
+        module="cli.doctor",
         examples=("firm-hdl doctor", "firm-hdl doctor --json"),
         has_origins=False,
     ),
     "md5": Command(
         help="print the md5 sums of ROS 1 types",
-        module="reading",
+        module="cli.reading",
         examples=("firm-hdl md5 std_msgs/String",),
     ),
     "hash": Command(
         help="print the type hashes (RIHS01) of ROS 2 types",
-        module="reading",
+        module="cli.reading",
         examples=("firm-hdl hash std_msgs/msg/String",),
     ),
     "proto": Command(
         help="print an example of a type as ROS's own tools do",
-        module="reading",
+        module="cli.reading",
         examples=("firm-hdl proto geometry_msgs/msg/Twist",),
     ),
     "metrics": Command(
         help="print figures of message types: depth, leaves, sizes, alignment, features",
-        module="reading",
+        module="cli.reading",
         examples=("firm-hdl metrics --all --path src --format csv",),
     ),
 }

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+from firm_hdl.arguments import add_options
 from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
@@ -17,7 +18,7 @@ from firm_hdl.model import Message
 from firm_hdl.plan.shape import shape
 from firm_hdl.terminal import stage
 
-__all__ = ["add_cover_arguments", "read_chosen", "run_cover"]
+__all__ = ["add_cover", "read_chosen", "run_cover"]
 
 _HEAD = """\
 # Types that together have every feature that any of {where} has; bus of {bus_bytes} bytes.
@@ -25,8 +26,8 @@ _HEAD = """\
 """
 
 
-def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of ``firm-hdl cover``, besides ``--distro``, ``--path`` and the options."""
+def add_cover(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl cover``, besides the origins of definitions."""
     parser.add_argument(
         "types",
         nargs="*",
@@ -38,6 +39,8 @@ def add_cover_arguments(parser: argparse.ArgumentParser) -> None:
     do.add_argument(
         "--check", metavar="FILE", help="choose nothing; list the features that FILE's types lack"
     )
+    add_options(parser)
+    parser.set_defaults(run=run_cover)
 
 
 def read_chosen(path: str | Path) -> list[str]:

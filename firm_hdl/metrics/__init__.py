@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from firm_hdl.metrics.analysis import FEATURES, Analyses, Metrics, metrics_of
-from firm_hdl.metrics.command import FORMATS, report
+from firm_hdl.metrics.analysis import FEATURES, FORMATS, Analyses, Metrics, metrics_of, report
 
 __all__ = ["FEATURES", "FORMATS", "Analyses", "Metrics", "metrics_of", "report"]

@@ -10,10 +10,9 @@ from __future__ import annotations
 from firm_hdl.gateware.signatures import leaf_streams
 from firm_hdl.sim.bench import DeadlineError, RunOptions
 from firm_hdl.sim.design import ClockDomainError
-from firm_hdl.sim.harness import Harness
+from firm_hdl.sim.harness import Harness, RunResult, leaf_name
 from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
 from firm_hdl.sim.messages import MessagePort
-from firm_hdl.sim.record import RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, Stalls
 from firm_hdl.sim.streams import (
     receive,

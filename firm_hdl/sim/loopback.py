@@ -17,9 +17,8 @@ from firm_hdl.gateware.signatures import Status
 from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, Payload, Plan
 from firm_hdl.sim.bench import RunOptions
-from firm_hdl.sim.harness import Harness
+from firm_hdl.sim.harness import Harness, RunResult, leaf_name
 from firm_hdl.sim.payloads import as_packets
-from firm_hdl.sim.record import RunResult, leaf_name
 from firm_hdl.sim.stalls import StallPlan, stalls_of
 from firm_hdl.sim.values import to_transfers
 from firm_hdl.wire import Wire

@@ -21,8 +21,8 @@ from firm_hdl.model import Message
 from firm_hdl.plan import Payload, Plan, build_plan
 from firm_hdl.sim.bench import DeadlineError
 from firm_hdl.sim.design import Domain, check_domain, what_waits
+from firm_hdl.sim.harness import leaf_name
 from firm_hdl.sim.payloads import decoder_of, encoder_of
-from firm_hdl.sim.record import leaf_name
 from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
 from firm_hdl.sim.streams import SEND_DEADLINE
 from firm_hdl.sim.transfers import PendingTransfers, checked_transfers, transfer_table

@@ -13,6 +13,7 @@ from firm_hdl.arguments import (
     add_depends,
     add_engine,
     add_jobs,
+    add_json,
     add_path,
     add_types_or_all,
     add_wire,
@@ -47,7 +48,7 @@ from firm_hdl.verify.systems.tasks import (
     collect_tasks,
 )
 
-__all__ = ["Workload", "add_verify_arguments", "resolve", "run_verify"]
+__all__ = ["Workload", "add_verify", "resolve", "run_verify"]
 
 _USUAL_SYSTEMS = ("ts3",)
 
@@ -169,7 +170,7 @@ def resolve(request: Request) -> Workload:
 def _collect(request: Request, problems: dict[str, Diagnostic]) -> list[TypeUnderTest]:
     """Return the types from where the request says; add errors to `problems`."""
     if request.bags:
-        from firm_hdl.verify.ts3.recording import collect_recorded
+        from firm_hdl.verify.ts3.replay import collect_recorded
 
         return collect_recorded(
             next(iter(request.distros), None),
@@ -267,8 +268,8 @@ def _check_libraries(given: argparse.Namespace) -> None:
         given.usage_error("--no-stalls and --no-broken do not go with --sut")
 
 
-def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of the command to a parser."""
+def add_verify(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl verify``."""
     add_types_or_all(
         parser, "all types; with --path, all in those folders; with --bag, all that have topics"
     )
@@ -306,7 +307,8 @@ def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
     _add_board(parser.add_argument_group("boards"))
     _add_libraries(parser.add_argument_group("client libraries"), ts3)
     _add_results(parser.add_argument_group("results"))
-    parser.set_defaults(default_of=parser.get_default)
+    add_json(parser)
+    parser.set_defaults(run=run_verify, default_of=parser.get_default)
 
 
 def _add_ts1(group: argparse._ArgumentGroup) -> None:

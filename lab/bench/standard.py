@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from firm_hdl.bench.messages import STATED, Stated
+from firm_hdl.bench.cycles import STATED, Stated
 from firm_hdl.bench.results import Converted
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.bench.tools import BenchError

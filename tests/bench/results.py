@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from firm_hdl.bench.cycles import Cycles
+from firm_hdl.bench.cycles import STATED, Cycles
 from firm_hdl.bench.devices import DEVICES, Area
 from firm_hdl.bench.flow import Measured, Placed
-from firm_hdl.bench.messages import STATED
-from firm_hdl.bench.paths import CriticalPath
+from firm_hdl.bench.netlist import CriticalPath
 from firm_hdl.bench.results import Converted, Result
 
 __all__ = ["result"]

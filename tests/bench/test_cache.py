@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from firm_hdl.bench import cache
+from firm_hdl.bench import run
 from firm_hdl.bench.devices import DEVICES, Device
 from firm_hdl.bench.flow import Measured
 from tests.bench.results import result
@@ -24,8 +24,8 @@ def test_each_input_has_figures_of_its_own(tmp_path: Path, monkeypatch: pytest.M
         assert found is not None
         return found
 
-    monkeypatch.setattr(cache, "measure", measure)
-    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: tools)
+    monkeypatch.setattr(run, "measure", measure)
+    monkeypatch.setattr(run, "versions", lambda device, *, with_placer: tools)
     usual = {
         "rtlil": "a",
         "device": DEVICES["ecp5"],
@@ -47,7 +47,7 @@ def test_each_input_has_figures_of_its_own(tmp_path: Path, monkeypatch: pytest.M
     ]
 
     def lut(change: dict[str, Any]) -> int:
-        return cache.measure_once(**(usual | change)).area.lut  # type: ignore[arg-type]
+        return run.measure_once(**(usual | change)).area.lut  # type: ignore[arg-type]
 
     first = [lut(change) for change in changes]
     assert first == [*range(1, len(changes) + 1)]
@@ -72,13 +72,13 @@ def test_figures_with_a_problem_and_damaged_files_are_measured_again(
     texts = ["{}", "[]", "null", '{"device": "abacus"}', ""]
     again = [replace(good, mapping=f"again {number}") for number in range(len(texts) + 1)]
     found = [replace(good, problem="no room"), good, *again]
-    monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
-    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
+    monkeypatch.setattr(run, "measure", lambda *_, **__: found.pop(0))
+    monkeypatch.setattr(run, "versions", lambda device, *, with_placer: {})
 
     folder = tmp_path / "new" / "folder"
 
     def once() -> Measured:
-        return cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=folder)
+        return run.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=folder)
 
     assert once().problem == "no room" and once() == once() == good
     (file,) = folder.iterdir()
@@ -93,11 +93,11 @@ def test_other_preparations_of_yosys_have_figures_of_their_own(
     good = result().measured
     assert good is not None
     found = [good, replace(good, mapping="again")]
-    monkeypatch.setattr(cache, "measure", lambda *_, **__: found.pop(0))
-    monkeypatch.setattr(cache, "versions", lambda device, *, with_placer: {})
+    monkeypatch.setattr(run, "measure", lambda *_, **__: found.pop(0))
+    monkeypatch.setattr(run, "versions", lambda device, *, with_placer: {})
     for preparations, mapping in ((("", "proc; "), good.mapping), (("",), "again")):
-        monkeypatch.setattr(cache, "PREPARATIONS", preparations)
-        measured = cache.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
+        monkeypatch.setattr(run, "PREPARATIONS", preparations)
+        measured = run.measure_once("a", DEVICES["ecp5"], (1,), mapping="", folder=tmp_path)
         assert measured.mapping == mapping
 
 
@@ -111,7 +111,7 @@ def test_nextpnr_is_looked_for_only_if_it_is_run(
         asked.append((device.name, options))
         return {}
 
-    monkeypatch.setattr(cache, "measure", lambda *_, **__: result().measured)
-    monkeypatch.setattr(cache, "versions", versions)
-    cache.measure_once("a", DEVICES["ecp5"], seeds, mapping="", folder=tmp_path)
+    monkeypatch.setattr(run, "measure", lambda *_, **__: result().measured)
+    monkeypatch.setattr(run, "versions", versions)
+    run.measure_once("a", DEVICES["ecp5"], seeds, mapping="", folder=tmp_path)
     assert asked == [("ecp5", {"with_placer": with_placer})]

@@ -11,7 +11,7 @@ import pytest
 from amaranth.hdl import Fragment
 
 from firm_hdl.bench import DEVICES, Device, command, run
-from firm_hdl.bench.messages import Stated
+from firm_hdl.bench.cycles import Stated
 from firm_hdl.bench.results import Converted, read_results
 from firm_hdl.bench.run import BenchTask, run_task, run_tasks
 from firm_hdl.cli import main

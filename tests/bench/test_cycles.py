@@ -9,8 +9,7 @@ import pytest
 
 from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.bench import cycles
-from firm_hdl.bench.cycles import count_cycles
-from firm_hdl.bench.messages import Stated, values
+from firm_hdl.bench.cycles import Stated, count_cycles, values
 from firm_hdl.model import Array, Field, Message, Sequence, String
 from firm_hdl.model.types import PRIMITIVES
 from tests.strategies import make

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from firm_hdl.bench import command, run
-from firm_hdl.bench.messages import STATED
+from firm_hdl.bench.cycles import STATED
 from firm_hdl.bench.results import Result
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.cli import main

@@ -11,8 +11,8 @@ import pytest
 
 from firm_hdl.bench import command
 from firm_hdl.bench.compare import compare
+from firm_hdl.bench.cycles import Stated, values
 from firm_hdl.bench.devices import DEVICES, PARITY, Area
-from firm_hdl.bench.messages import Stated, values
 from firm_hdl.bench.results import Result
 from firm_hdl.bench.tables import summary
 from firm_hdl.cli import main

@@ -8,8 +8,7 @@ import pytest
 
 from firm_hdl.bench import DEVICES, BenchError
 from firm_hdl.bench.devices import Area
-from firm_hdl.bench.netlist import Names, cell_counts, top_module
-from firm_hdl.bench.paths import critical_path
+from firm_hdl.bench.netlist import Names, cell_counts, critical_path, top_module
 from tests.bench.netlists import flip_flop, lut, small
 
 ECP5 = DEVICES["ecp5"]

@@ -11,8 +11,8 @@ import pytest
 
 from firm_hdl.bench import BenchError
 from firm_hdl.bench.compare import compare, compared
+from firm_hdl.bench.cycles import STATED
 from firm_hdl.bench.devices import DEVICES, Area
-from firm_hdl.bench.messages import STATED
 from firm_hdl.bench.results import Result, read_results, results_text
 from firm_hdl.bench.tables import geometric_mean, head, row, summary
 from tests.bench.results import result

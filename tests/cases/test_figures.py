@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.cases.figures import digest, figures
+from firm_hdl.cases.effort import digest, figures
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
 from tests.strategies import make

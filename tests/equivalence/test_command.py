@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.cli import main
-from firm_hdl.equivalence import Proof, Tools, command, converters, tools
-from firm_hdl.equivalence.converters import Attempt, ProofTask
+from firm_hdl.equivalence import Proof, Tools, command, tools
+from firm_hdl.equivalence.command import Attempt, ProofTask
 from firm_hdl.jobs import ToolError, programs
 
 TASK = ProofTask(distro="lyrical", name="a/msg/B", direction="serializer")
@@ -141,9 +141,7 @@ def test_unknown_types_are_an_error(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_type_that_cannot_be_built_is_a_failure() -> None:
-    attempt = converters.attempt(
-        ProofTask(distro="lyrical", name="no/msg/T", direction="serializer")
-    )
+    attempt = command.attempt(ProofTask(distro="lyrical", name="no/msg/T", direction="serializer"))
     assert attempt.result == "failed"
     assert "no/msg/T" in attempt.problem or "package 'no'" in attempt.problem
 
@@ -153,4 +151,4 @@ def test_type_that_is_too_large_is_a_failure(tmp_path: Path) -> None:
     fields = "".join(f"uint8[] f{k}\n" for k in range(120))
     (tmp_path / "big_msgs" / "msg" / "Big.msg").write_text(fields)
     task = replace(TASK, name="big_msgs/msg/Big", paths=(str(tmp_path),), bus_bytes=64)
-    assert "Amaranth elaborates at most 65535" in converters.attempt(task).problem
+    assert "Amaranth elaborates at most 65535" in command.attempt(task).problem

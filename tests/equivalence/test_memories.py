@@ -12,8 +12,8 @@ import pytest
 from firm_hdl.equivalence import ProofError, Tools, prove
 from firm_hdl.equivalence.memories import MemoryCircuit
 from firm_hdl.equivalence.miter import make_miter
+from firm_hdl.equivalence.proof import solve
 from firm_hdl.equivalence.rtlil_side import read_rtlil
-from firm_hdl.equivalence.solve import solve
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.depth import by_depth
 from tests.rtlil.memory_designs import DESIGNS, Store, random_stores, rtlil_of

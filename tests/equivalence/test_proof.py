@@ -17,7 +17,7 @@ from amaranth.hdl import Array, Cat, Elaboratable, Module, Mux, Signal, Value, s
 
 from firm_hdl import load_message
 from firm_hdl.equivalence import ProofError, Tools, prove
-from firm_hdl.equivalence.converters import converter_vhdl
+from firm_hdl.equivalence.command import converter_vhdl
 from firm_hdl.export.build import build
 from firm_hdl.export.top import DIRECTIONS, Direction
 from firm_hdl.vhdl.convert import Vhdl, convert

@@ -12,9 +12,9 @@ from amaranth.back import rtlil as amaranth_rtlil
 from amaranth.hdl import Module, Signal
 
 from firm_hdl.equivalence import Proof, ProofError, Tools, command, prove
-from firm_hdl.equivalence.converters import Attempt, ProofTask
+from firm_hdl.equivalence.command import Attempt, ProofTask
 from firm_hdl.equivalence.miter import Claim, Miter
-from firm_hdl.equivalence.solve import solve
+from firm_hdl.equivalence.proof import solve
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.depth import by_depth

@@ -6,8 +6,8 @@ import pytest
 
 from firm_hdl.gateware.signatures import packet_layout
 from firm_hdl.plan import build_plan
+from firm_hdl.sim.harness import Recorder
 from firm_hdl.sim.payloads import all_beats, packet_beats
-from firm_hdl.sim.record import Recorder
 from firm_hdl.wire import lay_out
 from tests.strategies import make
 

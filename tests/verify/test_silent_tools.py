@@ -14,7 +14,7 @@ from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cli import main
 from firm_hdl.frontend import Library
 from firm_hdl.jobs.programs import ProgramMissingError
-from firm_hdl.verify.clients.judge import compare
+from firm_hdl.verify.clients.system import compare
 from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.simulators.programs import Verilator

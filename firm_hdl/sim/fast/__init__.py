@@ -5,8 +5,7 @@ from __future__ import annotations
 from firm_hdl.sim.fast.channel import SimulationError
 from firm_hdl.sim.fast.compilers import BuildError, Report
 from firm_hdl.sim.fast.engines import EngineName
-from firm_hdl.sim.fast.packing import Packet, Transfer
-from firm_hdl.sim.fast.simulation import FastSimulation
+from firm_hdl.sim.fast.simulation import FastSimulation, Packet, Transfer
 from firm_hdl.sim.fast.top import ClockDomainError
 
 __all__ = [

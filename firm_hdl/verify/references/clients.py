@@ -11,8 +11,14 @@ from firm_hdl.cases.wide_oracle import stand_ins
 from firm_hdl.model import Message, closure
 from firm_hdl.verify.references.client import Client, ClientMissingError
 from firm_hdl.verify.references.fastcdr import NEWER, FastCdr
-from firm_hdl.verify.references.genpy import Genpy
-from firm_hdl.verify.references.libraries import CycloneDds, FirmHdl, McapRos1, McapRos2, Rosbags
+from firm_hdl.verify.references.libraries import (
+    CycloneDds,
+    FirmHdl,
+    Genpy,
+    McapRos1,
+    McapRos2,
+    Rosbags,
+)
 from firm_hdl.wire import Wire
 
 __all__ = [

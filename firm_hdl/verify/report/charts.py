@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
-from firm_hdl.verify.report.stats import Box, Fit
-from firm_hdl.verify.report.summary import Counts, Curve, Trend
+from firm_hdl.verify.report.summary import Box, Counts, Curve, Fit, Trend
 from firm_hdl.verify.results.records import STAGES
 
 __all__ = [

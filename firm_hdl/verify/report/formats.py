@@ -38,7 +38,7 @@ from firm_hdl.verify.results.records import to_json as record_to_json
 
 __all__ = [
     "FORMATS",
-    "add_report_arguments",
+    "add_report",
     "run_report",
     "write_report",
 ]
@@ -189,7 +189,7 @@ def _environment(*, is_html: bool, **filters: Any) -> Environment:
     return found
 
 
-def add_report_arguments(parser: argparse.ArgumentParser) -> None:
+def add_report(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of ``firm-hdl report``."""
     parser.add_argument(
         "results", nargs="+", metavar="RESULTS", help="files that firm-hdl verify --results wrote"
@@ -199,6 +199,7 @@ def add_report_arguments(parser: argparse.ArgumentParser) -> None:
         "--format", choices=list(FORMATS), help="default: that of the file's name, or md"
     )
     parser.add_argument("--title", default="Verification of firm-hdl", help="default: %(default)s")
+    parser.set_defaults(run=run_report)
 
 
 def run_report(given: argparse.Namespace) -> None:

@@ -13,11 +13,11 @@ from typing import TypeAlias, TypeVar
 
 from firm_hdl.drawing.svg import number, seconds
 from firm_hdl.verify.report.charts import law_text, line_text
-from firm_hdl.verify.report.stats import Fit
 from firm_hdl.verify.report.summary import (
     LIMITS,
     Counts,
     Curve,
+    Fit,
     Group,
     NotRun,
     Outcome,

@@ -16,6 +16,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from firm_hdl.arguments import add_options
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.files import read_file, write_file
@@ -31,7 +32,7 @@ __all__ = [
     "Checked",
     "Golden",
     "add",
-    "add_golden_arguments",
+    "add_golden",
     "check_golden",
     "read_golden",
     "run_golden",
@@ -171,8 +172,8 @@ def summarise(results: Iterable[Checked]) -> dict[str, list[str]]:
     return {kind: list(touched[kind]) for kind in kinds}
 
 
-def add_golden_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the arguments of ``firm-hdl golden``, except those that it shares with other commands."""
+def add_golden(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``firm-hdl golden``, besides the origins of definitions."""
     parser.add_argument(
         "do",
         choices=["check", "accept", "add"],
@@ -181,6 +182,8 @@ def add_golden_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("folder", metavar="DIR", help="folder of golden plans")
     parser.add_argument("types", nargs="*", metavar="TYPE", help="all of the folder, if none")
+    add_options(parser)
+    parser.set_defaults(run=run_golden)
 
 
 def run_golden(given: argparse.Namespace) -> int:

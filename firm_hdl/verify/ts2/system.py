@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 from firm_hdl.cases import NotJudgedError
-from firm_hdl.cases.figures import digest, figures
+from firm_hdl.cases.effort import digest, figures
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.model import Message

@@ -24,12 +24,13 @@ from firm_hdl.cases.directed import bare_packets
 from firm_hdl.cases.effort import (
     all_cases,
     cases_to_disturb,
+    digest,
+    figures,
     is_large,
     message_limit,
     packets_to_simulate,
     too_large,
 )
-from firm_hdl.cases.figures import digest, figures
 from firm_hdl.cases.make import Case
 from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cases.user_oracle import Judge, judge_of

@@ -23,8 +23,7 @@ from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.plan import Plan
 from firm_hdl.sim.bench import DeadlineError, RunOptions
-from firm_hdl.sim.harness import Harness
-from firm_hdl.sim.record import RunResult
+from firm_hdl.sim.harness import Harness, RunResult
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.simulators.programs import TextSimulator, simulator
 from firm_hdl.verify.simulators.trace import Trace, read_row

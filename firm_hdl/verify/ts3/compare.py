@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from firm_hdl.cases.oracle import Transfers
 from firm_hdl.plan import Payload, Plan
-from firm_hdl.sim.record import RunResult
+from firm_hdl.sim.harness import RunResult
 from firm_hdl.verify.results.verdict import first_difference
 
 __all__ = [

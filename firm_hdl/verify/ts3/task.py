@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from firm_hdl.cases.effort import message_limit
-from firm_hdl.cases.figures import digest
+from firm_hdl.cases.effort import digest, message_limit
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.verify.results.records import Test

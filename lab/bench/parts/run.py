@@ -8,9 +8,9 @@ from pathlib import Path
 
 from amaranth.back import rtlil
 
-from firm_hdl.bench.cache import measure_once
 from firm_hdl.bench.devices import DEVICES
 from firm_hdl.bench.flow import Measured
+from firm_hdl.bench.run import measure_once
 from firm_hdl.bench.tools import BenchError
 from firm_hdl.jobs import run_each
 from lab.bench.parts.standard import PARTS, Part

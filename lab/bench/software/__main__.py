@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from firm_hdl.arguments import add_origins, check_types_or_all
-from firm_hdl.bench.command import NO_DEVICE, add_bench_arguments, bench_tasks
+from firm_hdl.bench.command import NO_DEVICE, add_bench, bench_tasks
 from firm_hdl.bench.run import run_tasks
 from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.plan import DIRECTIONS
@@ -27,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Time libraries, and print which have no figure; return 1 if a converter has no figure."""
     parser = argparse.ArgumentParser(prog="python -m lab.bench.software", description=__doc__)
     add_origins(parser)
-    add_bench_arguments(parser)
+    add_bench(parser)
     given = parser.parse_args(arguments)
     for name in OF_CIRCUITS:
         if getattr(given, name) is not None:

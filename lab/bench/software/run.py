@@ -7,8 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from firm_hdl.bench.cycles import stated_messages
-from firm_hdl.bench.messages import STATED
+from firm_hdl.bench.cycles import STATED, stated_messages
 from firm_hdl.bench.results import Result
 from firm_hdl.bench.run import BenchTask
 from firm_hdl.export.build import plan_of

@@ -8,8 +8,7 @@ from dataclasses import replace
 import pytest
 
 from firm_hdl.bench import BenchError
-from firm_hdl.bench.cycles import stated_messages
-from firm_hdl.bench.messages import Stated
+from firm_hdl.bench.cycles import Stated, stated_messages
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import load_message
 from firm_hdl.jobs import ProgramMissingError

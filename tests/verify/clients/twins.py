@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from firm_hdl.verify.clients.judge import compare
+from firm_hdl.verify.clients.system import compare
 from firm_hdl.verify.references.client import Client, Codec
 from firm_hdl.verify.systems.system import Trial
 from tests.verify.report.samples import a_test

@@ -8,8 +8,7 @@ import pytest
 
 from firm_hdl.drawing.svg import Scale, seconds
 from firm_hdl.verify.report.charts import cumulative, scatter, stages
-from firm_hdl.verify.report.stats import Correlation, Fit, box_of, curve_of
-from firm_hdl.verify.report.summary import Curve, Trend
+from firm_hdl.verify.report.summary import Correlation, Curve, Fit, Trend, box_of, curve_of
 
 TIMES = [0.1, 0.2, 0.3, 0.4, 10.0]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.report.stats import (
+from firm_hdl.verify.report.summary import (
     box_of,
     correlate,
     curve_of,

@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.plan import build_plan
-from firm_hdl.sim.record import RunResult
+from firm_hdl.sim.harness import RunResult
 from firm_hdl.verify.ts3.compare import Expected, run_differences
 from firm_hdl.wire import lay_out
 from tests.strategies import make

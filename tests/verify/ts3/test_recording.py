@@ -10,8 +10,7 @@ import pytest
 from firm_hdl.errors import DefinitionError
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
-from firm_hdl.verify.ts3.recording import Selection, collect_recorded, select, topics_of
-from firm_hdl.verify.ts3.replay import replay
+from firm_hdl.verify.ts3.replay import Selection, collect_recorded, replay, select, topics_of
 from firm_hdl.verify.ts3.task import test_of
 from tests.recordings.files import Channel, write_mcap
 from tests.tools import need
