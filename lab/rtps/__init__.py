@@ -1,0 +1,1 @@
+"""Damaged datagrams through a participant in gateware, among good ones."""
