@@ -50,7 +50,7 @@ _OURS = (
     r"((vhdl|systemverilog|ip/\w+(/xgui)?)/)?(Makefile|((tb_)?DESIGN\w*|firm_hdl_\w+|"
     r"\w+_(cdr|ros1)_\d+\w*_pkg|README|bench_files|bitstream|component|datasheet|files|layout|"
     r"link|package|pins|plan|report|run_ghdl|run_iverilog|run_verilator|stimuli|summary|top|vivado|"
-    r"vunit_run|waivers)\.(bin|bit|core|f|h|html|lpf|md|pcf|py|rdl|sh|sv|svg|tcl|sdc|txt|v|veo|vhd|vlt|xdc|"
+    r"vunit_run|waivers)\.(bin|bit|core|f|h|html|lpf|md|pcf|py|qip|rdl|sh|sv|svg|tcl|sdc|txt|v|veo|vhd|vlt|xdc|"
     r"xml|yaml))"
 )
 """Names of the files that firm-hdl writes, and deletes if they are outdated."""

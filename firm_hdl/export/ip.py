@@ -195,7 +195,7 @@ def _streams(by_name: Mapping[str, Any]) -> Iterator[Bus]:
         base = name.removesuffix("_tdata")
         own = {each.upper(): f"{base}_{each}" for each in _AXIS if f"{base}_{each}" in by_name}
         if base != name and {"TVALID", "TREADY"} <= own.keys():
-            mode = "slave" if port.direction == "in" else "master"
+            mode: Literal["master", "slave"] = "slave" if port.direction == "in" else "master"
             yield Bus(name=base, kind="axis", mode=mode, ports=own)
 
 

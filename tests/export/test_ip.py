@@ -357,7 +357,7 @@ def check_litex(file, monkeypatch):
         assert all(Path(source).is_file() for source in sources)
         assert [Path(source).stem for source in sources][-1] == module
         open_inputs[name] = {
-            port[2:]: str(each.reset) for port, each in ports.items() if each.reset is not None
+            port[2:]: str(each.reset) for port, each in ports.items() if each.reset
         }
     return open_inputs
 
@@ -400,17 +400,16 @@ def test_converters_are_ip_of_quartus_and_litex(vivado, tmp_path, monkeypatch):
         inputs={"distro": "lyrical"},
         registers=register_maps(message, plan),
     )
-    for tool in ("quartus", "litex"):
-        options = Options(leaf_ports="axis", ip=tool)
+    for tool, leaf_ports in (("quartus", "axis"), ("litex", "axis"), ("litex", "plain")):
+        options = Options(leaf_ports=leaf_ports, ip=tool)
         output = ip.write(replace(made, options=options), texts)
-        for name, text in {**texts, **output.files}.items():
-            (tmp_path / tool / name).parent.mkdir(parents=True, exist_ok=True)
-            (tmp_path / tool / name).write_text(text)
-        assert all(
-            (tmp_path / tool / each["component"]).is_file()
-            for each in output.manifest["ip"]["components"]
-        )
-    folder = tmp_path / "quartus" / "ip"
+        out = tmp_path / tool / leaf_ports
+        for name, text in output.files.items():
+            (out / name).parent.mkdir(parents=True, exist_ok=True)
+            (out / name).write_text(text)
+        components = output.manifest["ip"]["components"]
+        assert all((out / each["component"]).is_file() for each in components)
+    folder = tmp_path / "quartus" / "axis" / "ip"
     found = {
         each.name.removeprefix(NAME): check_quartus_ip(each, tmp_path / "run.tcl")
         for each in folder.iterdir()
@@ -432,10 +431,13 @@ def test_converters_are_ip_of_quartus_and_litex(vivado, tmp_path, monkeypatch):
     # All signals of AXI4-Lite.
     (registers,) = (folder / f"{NAME}_serializer_registers").glob("*_quartus_verilog.v")
     assert registers.read_text().count(" s_axi_") == 19
-    open_inputs = check_litex(tmp_path / "litex" / f"{NAME}_litex.py", monkeypatch)
+    open_inputs = check_litex(tmp_path / "litex" / "axis" / f"{NAME}_litex.py", monkeypatch)
     for way in ("deserializer", "serializer"):
         xml = built.folder / "ip" / f"{NAME}_{way}" / "component.xml"
         assert open_inputs[way.title()] == default_values(ElementTree.parse(xml).getroot())
+    # Leaves that are pins are taken, too.
+    plain = check_litex(tmp_path / "litex" / "plain" / f"{NAME}_litex.py", monkeypatch)
+    assert plain["Deserializer"]["range_field_ready"] == "1"
     assert open_inputs.keys() == {
         f"{way}{rest}" for way in ("Deserializer", "Serializer") for rest in ("", "Registers")
     }
@@ -513,19 +515,18 @@ def test_converters_are_ip_of_vivado(vivado, tmp_path):
     assert found["s_axi"][:2] == ("xilinx.com:interface:aximm:1.0", "slave")
     assert found["aclk"][3]["ASSOCIATED_BUSIF"] == "m_axis:s_axi"
     assert found["irq"][1:3] == ("master", {"INTERRUPT": "irq"})
-    # Leaves that are pins are taken, too.
     (built,) = build(
         ["test_msgs/msg/T"],
-        package / "out",
+        tmp_path / "out",
         library=Library(paths=[package]),
-        options=Options(ports="flat", ip="vivado"),
+        options=Options(ports="flat", ip="quartus"),
     )
-    component = ElementTree.parse(built.folder / "ip" / f"{name}_deserializer/component.xml")
-    assert default_values(component.getroot()).items() >= {("range_field_ready", "1")}
+    found = check_quartus_ip(built.folder / "ip" / f"{name}_deserializer", tmp_path / "run.tcl")
+    assert found["pins"] == ("conduit", "end") and found.keys() > {"s_axis", "m_axis_status"}
     # Without the option, all of it goes, with its folders.
     build(
         ["test_msgs/msg/T"],
-        package / "out",
+        tmp_path / "out",
         library=Library(paths=[package]),
         options=Options(ports="flat"),
     )
