@@ -10,12 +10,17 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.depth import LIVE, THOROUGH, not_sampled
+from tests.depth import LIVE, THOROUGH, by_depth, not_sampled
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
 # A test must not fail because the machine is busy.
-settings.register_profile("unhurried", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile(
+    "unhurried",
+    deadline=None,
+    max_examples=by_depth(40, 100),
+    suppress_health_check=[HealthCheck.too_slow],
+)
 settings.load_profile("unhurried")
 
 # Tests must not depend on the packages of an active ROS workspace.

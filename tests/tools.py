@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-__all__ = ["need", "run_script"]
+__all__ = ["made_once", "need", "run_script"]
 
 
 def need(tool: str, path: str | None) -> str:
@@ -19,6 +21,21 @@ def need(tool: str, path: str | None) -> str:
             pytest.fail(message)
         pytest.skip(message)
     return path
+
+
+def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """Return a folder that one of pytest's processes makes, for all of them."""
+    base = factory.getbasetemp()
+    # pytest-xdist gives each of its processes a folder below a common one.
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / name
+    with folder.with_suffix(".lock").open("a+") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        lock.seek(0)
+        if not lock.read():
+            folder.mkdir(exist_ok=True)
+            make(folder)
+            lock.write("made")
+    return folder
 
 
 def run_script(

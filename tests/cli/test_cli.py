@@ -346,4 +346,4 @@ def test_build_that_is_interrupted_leaves_whole_folders(workdir, capsys, monkeyp
         assert found == {*listed, "manifest.json"}
     assert not list(workdir.glob("vhdl_out/lyrical/.*"))
     # Converters that were not elaborated warn when they are collected.
-    gc.collect()
+    gc.collect(1)

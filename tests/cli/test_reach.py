@@ -160,19 +160,6 @@ def test_good_types_are_printed_before_the_error_of_another(workdir, capsys, com
     assert err.startswith("src/p/msg/Bad.msg:2:7: error: field 'a' is already declared in line 1\n")
 
 
-def test_types_of_other_folders_are_no_part_of_all(workdir, capsys):
-    for path in workdir.glob("src/p/msg/Bad.msg"):
-        path.unlink()
-    assert main(["show", "p/A", "--path", "src"]) == 1
-    assert main(["show", "p/A", "--path", "src", "--depends", "more"]) == 0
-    assert capsys.readouterr().out == "uint8 a\nq/B b\n\tint16 b\n"
-    for command in ("hash", "proto"):
-        assert main([command, "--all", "--path", "src", "--depends", "more"]) == 0
-        out = capsys.readouterr().out
-        assert "p/msg/A" in out and "p/msg/C" in out
-        assert "q/msg/B" not in out and "std_msgs" not in out
-
-
 def test_the_example_of_the_only_type_of_all_has_its_name(workdir, capsys):
     for name in ("A", "Bad"):
         (workdir / f"src/p/msg/{name}.msg").unlink()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
+from contextlib import redirect_stdout
 
 import pytest
 
@@ -11,6 +11,7 @@ from firm_hdl.cli import main
 from firm_hdl.export.design import BuiltDesign
 from firm_hdl.node.bitstream import build
 from tests.node.bitstream.samples import PINS, TEXT, fake_tools
+from tests.tools import made_once
 
 
 @pytest.fixture(scope="session")
@@ -19,11 +20,15 @@ def node(tmp_path_factory):
 
     Copy its folder before you change it.
     """
-    out = tmp_path_factory.mktemp("bitstream")
-    (out / "pins.yaml").write_text(TEXT + PINS)
-    command = ["node", "build", str(out / "pins.yaml"), "--out", str(out), "--board", "ulx3s-45f"]
-    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(io.StringIO()) as said:
-        patch.setattr(build, "find_tools", lambda family: fake_tools(7.5))
-        main(command)
-    (out / "pins" / "said.txt").write_text(said.getvalue())
+
+    def make(out):
+        file = out / "pins.yaml"
+        file.write_text(TEXT + PINS)
+        command = ["node", "build", str(file), "--out", str(out), "--board", "ulx3s-45f"]
+        with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as said:
+            patch.setattr(build, "find_tools", lambda family: fake_tools(7.5))
+            main(command)
+        (out / "pins" / "said.txt").write_text(said.getvalue())
+
+    out = made_once(tmp_path_factory, "bitstream", make)
     return BuiltDesign(folder=out / "pins", was_current=False)

@@ -161,21 +161,6 @@ def test_wrong_names(file, capsys, options, message):
     assert message in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["--seconds", "0"], "must be above 0, not 0"),
-        (["--seconds", "x"], "'x' is not a number"),
-        (["--domain", "233"], "must be from 0 to 232, not 233"),
-        (["--graph", "ros3"], "invalid choice: 'ros3'"),
-    ],
-)
-def test_wrong_arguments(file, capsys, options, message):
-    with pytest.raises(SystemExit, match=r"^2$"):
-        main(["node", "run", file, *options])
-    assert message in capsys.readouterr().err
-
-
 def test_another_board_ends_the_command(file, board, capsys):
     board.node = FakeNode(fingerprint=1)
     options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "none"]

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import fcntl
-import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -17,6 +15,7 @@ from firm_hdl.sim.fast.compilers import program_of, verilated_source
 from firm_hdl.sim.fast.ports import ports_of
 from firm_hdl.sim.fast.top import Top
 from tests.sim.fast.designs import Awkward
+from tests.tools import made_once
 
 OPTIONS = ("-O0",)
 
@@ -26,15 +25,13 @@ Open = Callable[..., FastSimulation]
 @pytest.fixture(scope="session")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the program of `Awkward`, which is compiled by one of pytest's processes."""
-    base = tmp_path_factory.getbasetemp()
-    # pytest-xdist gives each of its processes a folder below a common one.
-    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "programs"
-    with (folder.parent / "programs.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+
+    def make(folder: Path) -> None:
         design = Awkward()
         source = partial(verilated_source, Top(design, ports_of(design)))
         program_of(source, options=OPTIONS, cache=folder)
-    return folder
+
+    return made_once(tmp_path_factory, "programs", make)
 
 
 @pytest.fixture
