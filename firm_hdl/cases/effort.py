@@ -44,10 +44,7 @@ OF_THE_TYPE = ("depth", "types", "leaves", "dynamic_leaves", "min_bytes", "shift
 def figures(message: Message, plan: Plan, packets: Sequence[bytes]) -> dict[str, float]:
     """Return figures by name.
 
-    Parameters
-    ----------
-    packets : sequence of bytes
-        The packets of all cases.
+    * `packets`: the packets of all cases.
     """
     of_the_type = metrics_of(message, plan.wire)
     found: dict[str, float] = {name: getattr(of_the_type, name) for name in OF_THE_TYPE}
@@ -92,10 +89,7 @@ LEAST_LEAVES = 8
 def message_limit(min_bytes: int) -> int:
     """Return the largest message that converters are tested with.
 
-    Parameters
-    ----------
-    min_bytes : int
-        The size of the type's smallest message.
+    * `min_bytes`: the size of the type's smallest message.
     """
     return MAX_MESSAGE_BYTES + (min_bytes if min_bytes > MAX_MESSAGE_BYTES // 2 else 0)
 

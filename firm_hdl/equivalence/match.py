@@ -61,14 +61,9 @@ def word_name(memory: str, place: int) -> str:
 def match_names(rtlil: str, top: str, entities: Mapping[str, Names]) -> Match:
     """Match the signals and memories of both sides.
 
-    Parameters
-    ----------
-    rtlil : str
-        RTLIL text; only its modules, instances and sizes of memories are read.
-    top : str
-        The outermost module.
-    entities : mapping of str to Names
-        Names in VHDL by module.
+    * `rtlil`: RTLIL text; only its modules, instances and sizes of memories are read.
+    * `top`: the outermost module.
+    * `entities`: names in VHDL by module.
     """
     modules = _modules(rtlil)
     signals: dict[_Path, _Path] = {}

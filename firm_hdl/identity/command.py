@@ -25,10 +25,7 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
 
     Results are those of `of_each`.
 
-    Raises
-    ------
-    DefinitionError
-        If the distribution is of ROS 2.
+    Raises `DefinitionError` if the distribution is of ROS 2.
     """
     _require(library, "ros1", "md5 sums are for ROS 1; for ROS 2, use 'firm-hdl hash'")
 
@@ -43,10 +40,7 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
 def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
     """List type hashes, each with the name of its type. Results are those of `of_each`.
 
-    Raises
-    ------
-    DefinitionError
-        If the distribution is of ROS 1.
+    Raises `DefinitionError` if the distribution is of ROS 1.
     """
     _require(library, "ros2", "type hashes are for ROS 2; for ROS 1, use 'firm-hdl md5'")
 

@@ -69,11 +69,8 @@ def type_hash(interface: Interface) -> str:
 def type_description(interface: Interface) -> dict[str, Any]:
     """Describe a type in the form of ``type_description_interfaces/msg/TypeDescription``.
 
-    Raises
-    ------
-    ValueError
-        If the definition is of ROS 1, or if it is or has a service without an event message.
-        Services have event messages and hashes since iron.
+    Raises `ValueError` if the definition is of ROS 1, or if it is or has a service without an event
+    message. Services have event messages and hashes since iron.
     """
     if interface.dialect != "ros2":
         raise ValueError(f"Only types of ROS 2 have type hashes, and {interface} is of ROS 1")

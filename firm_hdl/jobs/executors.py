@@ -51,10 +51,7 @@ class ExecutorError(ValueError):
 def check_executor(name: str) -> str:
     """Check the name of an executor, and return it.
 
-    Raises
-    ------
-    ExecutorError
-        If the name is not that of an executor.
+    Raises `ExecutorError` if the name is not that of an executor.
     """
     address = name.removeprefix(DASK)
     host, _, port = address.rpartition(":")

@@ -185,10 +185,7 @@ class Analyses:
     def metrics(self, message: Message) -> Metrics:
         """Give the figures of a type.
 
-        Raises
-        ------
-        DefinitionError
-            If the figures have too many digits to be printed.
+        Raises `DefinitionError` if the figures have too many digits to be printed.
         """
         if message.leaf_count > _MAX_LEAVES:
             problem = f"{message.name} has more than 10^100 fields when it is written out"
@@ -389,11 +386,7 @@ _HEADINGS = {
 def report(rows: Iterable[Metrics], form: str) -> str:
     """Write figures in one of the formats.
 
-    Parameters
-    ----------
-    rows : iterable of Metrics
-    form : str
-        A key of `FORMATS`.
+    * `form`: a key of `FORMATS`.
     """
     return FORMATS[form](list(rows))
 

@@ -73,15 +73,9 @@ class Recording:
     def messages(self, topics: Container[Topic]) -> Iterator[tuple[Topic, int, bytes]]:
         """Yield topic, time in nanoseconds and bytes of each message, in the order of the files.
 
-        Parameters
-        ----------
-        topics : container of Topic
-            Those whose messages are read.
+        * `topics`: those whose messages are read.
 
-        Raises
-        ------
-        DefinitionError
-            If the recording cannot be read to its end.
+        Raises `DefinitionError` if the recording cannot be read to its end.
         """
         with self._reported():
             for file, budget in self._opened():

@@ -191,11 +191,8 @@ class Bench:
     def run(self, job: Job) -> int:
         """Run a job from reset; return the number of cycles, including those of the settling.
 
-        Raises
-        ------
-        ValueError
-            If the job asks for a waveform, and the bench keeps its state, or for stalls of a stream
-            that does not exist.
+        Raises `ValueError` if the job asks for a waveform, and the bench keeps its state, or for
+        stalls of a stream that does not exist.
         """
         check_stalls(job.options.stalls, self.names)
         vcd = job.options.vcd
@@ -374,12 +371,8 @@ class _Drive:
     def next(self, fired: int, held: int) -> int:
         """Go to the next cycle; return the words that change, as a bit mask.
 
-        Parameters
-        ----------
-        fired : int
-            Bit mask of the ports that transferred in this cycle.
-        held : int
-            Bit mask of the ports whose offered transfer was not taken.
+        * `fired`: bit mask of the ports that transferred in this cycle.
+        * `held`: bit mask of the ports whose offered transfer was not taken.
         """
         held &= self.gates & self.control
         control = self.control

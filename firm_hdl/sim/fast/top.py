@@ -67,17 +67,10 @@ class Top(Elaboratable):
     def prepare(self, *, name: str, divides: bool = False) -> Design:
         """Elaborate the design, with the clocks as ports ``clock0`` and so on.
 
-        Parameters
-        ----------
-        divides : bool
-            Divide combinational logic, as a simulation in Python wants it.
+        * `divides`: divide combinational logic, as a simulation in Python wants it.
 
-        Raises
-        ------
-        ClockDomainError
-            If a stream is in a domain whose clock the design drives itself, or in several.
-        wiring.ConnectionError
-            If a stream is connected twice.
+        Raises `ClockDomainError` if a stream is in a domain whose clock the design drives itself,
+        or in several. Raises `wiring.ConnectionError` if a stream is connected twice.
         """
         fragment = Fragment.get(self, None)
         check_connections(fragment)

@@ -29,19 +29,13 @@ class TalkError(Exception):
 class Talk:
     """A talk with a board, which is closed in the end; a context manager.
 
-    Parameters
-    ----------
-    board : Board
-        Not yet open.
-    description : Description
-        Of the node that the board has to have.
-    silent_seconds : float or None
-        A board that says nothing for so long has failed; `None`: as the board has it.
+    * `board`: not yet open.
+    * `description`: of the node that the board has to have.
+    * `silent_seconds`: a board that says nothing for so long has failed; `None`: as the board has
+      it.
 
-    Raises
-    ------
-    TalkError
-        From all methods, if the board is gone or silent, has started again, or is another one.
+    Raises `TalkError`: from all methods, if the board is gone or silent, has started again, or is
+    another one.
     """
 
     def __init__(

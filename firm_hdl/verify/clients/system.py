@@ -213,10 +213,8 @@ class Libraries(TypesSystem):
     A type has no test of a library that does not speak its wire, unless the user named wires or
     distributions.
 
-    Raises
-    ------
-    ClientMissingError
-        When the system is entered, if a library under test is not installed.
+    Raises `ClientMissingError`: when the system is entered, if a library under test is not
+    installed.
     """
 
     name = "sut"

@@ -649,10 +649,7 @@ def reason_groups(
 ) -> list[Reason]:
     """Group tests that were not judged for the same reason, the largest group first.
 
-    Parameters
-    ----------
-    text_of : callable or None
-        Returns the text to group a test by; `None`: why a test was not judged or not run.
+    * `text_of`: returns the text to group a test by; `None`: why a test was not judged or not run.
     """
     groups: dict[str, list[Outcome]] = defaultdict(list)
     texts: dict[str, str] = {}

@@ -134,16 +134,10 @@ class TextSimulator(Protocol):
 
         A bit that is undefined in the simulator is a letter, such as ``X``.
 
-        Parameters
-        ----------
-        tops : sequence of Top
-            The tops of the devices to export, in order.
-        folder : Path
-            An empty folder for the files of the simulator.
+        * `tops`: the tops of the devices to export, in order.
+        * `folder`: an empty folder for the files of the simulator.
 
-        Raises
-        ------
-        ToolError
+        Raises `ToolError`.
         """
 
 
@@ -263,9 +257,7 @@ SIMULATORS: dict[str, Callable[[], TextSimulator]] = {
 def simulator(name: str) -> TextSimulator | None:
     """Return a simulator by its name; `None` for ``python``, which is always used.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     return None if name == "python" else SIMULATORS[name]()
 

@@ -100,10 +100,7 @@ def judge(
 ) -> OracleVerdict | None:
     """Compare our reading of a definition with an oracle's; `None` if the oracle does not read it.
 
-    Parameters
-    ----------
-    ours : Message, Service, Action, Exception or None
-        Our reading; `None`: `read` is called for it.
+    * `ours`: our reading; `None`: `read` is called for it.
     """
     if case.language not in oracle.languages.get(case.dialect, ()):
         return None
@@ -130,10 +127,7 @@ def compare(
 ) -> Verdict:
     """Compare our reading of a definition with an oracle's answer.
 
-    Parameters
-    ----------
-    ours : Message, Service, Action or Exception
-        The result of `read`.
+    * `ours`: the result of `read`.
     """
     if isinstance(answer, NotJudged):
         return answer

@@ -47,12 +47,8 @@ def each_distro(request: Request) -> list[Request]:
     If the request names none, the default distribution is used with paths. Without paths, all
     distributions that have the types are used.
 
-    Raises
-    ------
-    UnknownTypeError
-        If no distribution has the types.
-    DefinitionError
-        If the active workspace has their packages without the types.
+    Raises `UnknownTypeError` if no distribution has the types. Raises `DefinitionError` if the
+    active workspace has their packages without the types.
     """
     names = request.distros or (
         [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
