@@ -129,16 +129,11 @@ def _has_clock(ctx: SimulatorContext, domain: ClockDomain) -> bool:
 
 
 class Logic:
-    """The assignments of a design, by the signals that they drive and read.
-
-    Attributes
-    ----------
-    drivers : dict of int to list
-        By the `id` of a driven signal: the domain of each driver, `None` for combinational logic,
-        and the values that it reads.
-    """
+    """The assignments of a design, by the signals that they drive and read."""
 
     def __init__(self, design: Design):
+        # By the `id` of a driven signal: the domain of each driver, `None` for combinational logic,
+        # and the values that it reads.
         self.drivers: dict[int, list[tuple[ClockDomain | None, list[Value]]]] = {}
         self._readers: dict[int, list[tuple[ClockDomain | None, list[Signal]]]] | None = None
         self._assigned = [each for fragment in design.fragments for each in _assigned(fragment)]

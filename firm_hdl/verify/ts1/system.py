@@ -97,10 +97,6 @@ class Ts1(System):
     ----------
     cases : dict of Test to DefinitionCase
         The definitions to judge.
-    versions : dict of str to str
-        Releases of the oracles that are asked, by name.
-    missing : dict of str to str
-        Why the other oracles cannot be asked, by name.
 
     Raises
     ------
@@ -113,8 +109,8 @@ class Ts1(System):
     def __init__(self, request: Request) -> None:
         self.request = request
         (self.distro,) = request.distros
-        self.versions: dict[str, str] = {}
-        self.missing: dict[str, str] = {}
+        self.versions: dict[str, str] = {}  # Releases of the oracles that are asked, by name.
+        self.missing: dict[str, str] = {}  # Why the other oracles cannot be asked, by name.
 
     def __enter__(self) -> Ts1:
         request = self.request
