@@ -162,20 +162,12 @@ def packets_to_simulate(
 ) -> list[int]:
     """Choose packets to simulate, all of them if that is not too much.
 
-    Parameters
-    ----------
-    packets : sequence of bytes
-        At least one packet.
-    taken : sequence of set of Edge
-        The decisions that each packet takes.
-    most : int
-        The most work of the chosen packets together. The first packet may be more work. Packets
-        with new decisions may bring the work to `MORE_FOR_NEW` times this limit.
+    * `packets`: at least one packet.
+    * `taken`: the decisions that each packet takes.
+    * `most`: the most work of the chosen packets together. The first packet may be more work.
+      Packets with new decisions may bring the work to `MORE_FOR_NEW` times this limit.
 
-    Returns
-    -------
-    list of int
-        Indices of packets, in their order.
+    Returns the indices of packets, in their order.
     """
     works = [work_of(plan, len(packet)) for packet in packets]
     if sum(works) <= most:

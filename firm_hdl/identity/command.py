@@ -74,18 +74,10 @@ def of_each(
 ) -> tuple[list[_T], DefinitionError | None]:
     """Load messages, services and actions, each once, and make something of each.
 
-    Parameters
-    ----------
-    library : Library
-    names : iterable of str
-        As for `Library.interface`; also the services that ROS 2 derives from an action.
-    make : callable
-        May raise DefinitionError, too.
+    * `names`: as for `Library.interface`; also the services that ROS 2 derives from an action.
+    * `make`: may raise DefinitionError, too.
 
-    Returns
-    -------
-    tuple of list and DefinitionError or None
-        What was made, and the errors of all other types.
+    Returns what was made, and the errors of all other types.
     """
     made: dict[tuple[type, str], _T] = {}
     problems: dict[str, Diagnostic] = {}

@@ -52,15 +52,9 @@ _Member: TypeAlias = "tuple[str, FieldType | Service]"
 def type_hash(interface: Interface) -> str:
     """Compute the type hash of a message, a service or an action of ROS 2.
 
-    Returns
-    -------
-    str
-        ``RIHS01_`` and 64 hexadecimal digits.
+    Returns ``RIHS01_`` and 64 hexadecimal digits.
 
-    Raises
-    ------
-    ValueError
-        As `type_description` does.
+    Raises `ValueError`: as `type_description` does.
     """
     text = json.dumps(type_description(interface))
     return f"RIHS01_{hashlib.sha256(text.encode()).hexdigest()}"

@@ -39,16 +39,10 @@ _log = logging.getLogger(__name__)
 def private_folder(folder: Path) -> Path:
     """Make a folder that this user alone can write, or check that a folder is one.
 
-    Returns
-    -------
-    Path
-        Absolute, and without links.
+    Its path is absolute, and without links.
 
-    Raises
-    ------
-    OSError
-        If the folder cannot be made, is a link, or belongs to another user, or if other users can
-        write it or replace it.
+    Raises `OSError` if the folder cannot be made, is a link, or belongs to another user, or if
+    other users can write it or replace it.
     """
     folder = Path(os.path.abspath(folder))
     folder = Path(os.path.realpath(folder.parent), folder.name)

@@ -221,20 +221,11 @@ def _printed(
 def answered(process: subprocess.Popen[bytes], question: str | None) -> dict[str, Any]:
     """Send a line to a process that stays for the next one, and return its answer.
 
-    Parameters
-    ----------
-    question : str or None
-        `None`: the process speaks first.
+    * `question`: with `None`, the process speaks first.
 
-    Returns
-    -------
-    dict
-        An object in JSON, on one line.
+    Returns an object in JSON, on one line.
 
-    Raises
-    ------
-    OSError, ValueError
-        If the process has ended, or says anything else.
+    Raises `OSError` or `ValueError` if the process has ended, or says anything else.
     """
     assert process.stdin is not None and process.stdout is not None
     if question is not None:

@@ -439,19 +439,10 @@ def metrics_text(
 ) -> tuple[str, DefinitionError | None]:
     """Write the figures of types. A service or an action gives the figures of its messages.
 
-    Parameters
-    ----------
-    library : Library
-    names : iterable of str
-    form : str
-        A key of `FORMATS`.
-    wire : "ros1", "cdr" or None
-        `None`: the wire format of the library's dialect.
+    * `form`: a key of `FORMATS`.
+    * `wire`: `None` is the wire format of the library's dialect.
 
-    Returns
-    -------
-    tuple of str and DefinitionError or None
-        The text, and the errors of the types that are not in it.
+    Returns the text, and the errors of the types that are not in it.
     """
     analyses = Analyses(wire or WIRE_OF[library.dialect])
     rows: dict[str, Metrics] = {}

@@ -143,10 +143,7 @@ def _simulate(entity: str, vhdl: Path, ghdl: str) -> Path:
 def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
     """Analyse all files in a temporary folder. Any message of GHDL is an error.
 
-    Returns
-    -------
-    folder, benches
-        The folder of the VHDL, and the entities to run.
+    Returns the folder of the VHDL, and the entities to run.
     """
     manifest = json.loads((built.folder / MANIFEST).read_text(encoding="utf-8"))["vhdl"]
     vhdl = built.folder.resolve() / str(manifest["folder"])

@@ -283,15 +283,10 @@ def translate(
 ) -> tuple[list[Path], Path]:
     """Write the C++ of a design into a folder.
 
-    Returns
-    -------
-    list of Path, Path
-        The files that are to be compiled, those of Verilator's runtime included, and the folder
-        of its headers.
+    Returns the files that are to be compiled, those of Verilator's runtime included, and the folder
+    of its headers.
 
-    Raises
-    ------
-    ToolError
+    Raises `ToolError`.
     """
     (folder / "design.v").write_text(source.verilog, encoding="utf-8")
     (folder / "main.cpp").write_text(source.main, encoding="utf-8")

@@ -89,17 +89,9 @@ class Talk:
 
         No more packets are under way than the memories of the node have room for.
 
-        Parameters
-        ----------
-        loop : subscription and publication
-        packets : sequence of bytes
-        comes_back : sequence of bool
-            Whether an answer is expected, for each packet; that of the last one is.
+        * `comes_back`: whether an answer is expected, for each packet; that of the last one is.
 
-        Returns
-        -------
-        list of bytes
-            Fewer packets than expected if nothing came for too long. More than expected can come.
+        Fewer packets than expected come back if nothing came for too long, and more can come.
         """
         came, back = loop
         window = _Window(self._description, loop)

@@ -86,10 +86,7 @@ def compare(
     one with the smallest value is a failure. An obstacle is that a library lacks the type, or that
     the reference has no answer.
 
-    Returns
-    -------
-    bool
-        Whether both libraries have the type.
+    Returns whether both libraries have the type.
     """
     try:
         for each in (library, reference):

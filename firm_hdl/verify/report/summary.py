@@ -121,10 +121,7 @@ def correlate(
 ) -> Correlation | None:
     """Return the correlation of two figures.
 
-    Returns
-    -------
-    Correlation or None
-        `None` if one of the figures does not vary.
+    It is `None` if one of the figures does not vary.
     """
     xs, ys = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(xs) < 2 or np.ptp(xs) == 0 or np.ptp(ys) == 0:

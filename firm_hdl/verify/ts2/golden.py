@@ -154,10 +154,7 @@ def write_golden(path: Path, text: str) -> None:
 def summarise(results: Iterable[Checked]) -> dict[str, list[str]]:
     """Group changes by their kind, so that one cause in many types shows as one kind.
 
-    Returns
-    -------
-    dict of str to list of str
-        Names of the types that each kind of change touches, the most frequent kind first.
+    Returns the names of the types that each kind of change touches, the most frequent kind first.
     """
     touched: dict[str, dict[str, None]] = defaultdict(dict)
     for result in results:
