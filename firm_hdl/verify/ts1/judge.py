@@ -23,8 +23,8 @@ def judge_case(
 ) -> Record:
     """Compare our reading of one definition with those of oracles.
 
-    In the record, ``generation`` is the time of our reading, and ``testing`` that of the oracles and
-    of comparisons. The processor time includes the oracles' processes.
+    In the record, ``generation`` is the time of our reading, and ``testing`` that of oracles and of
+    comparisons. The processor time includes the oracles' processes.
     """
     watch = Stopwatch()
     ours = read(universe, case)
