@@ -113,14 +113,8 @@ def _seeds(text: str) -> tuple[int, ...]:
 def run_bench(given: argparse.Namespace) -> int:
     """Run the command; return 1 if a figure is missing, or worse than in the older file.
 
-    Raises
-    ------
-    DefinitionError
-        If a type is invalid.
-    ProgramMissingError
-        If a tool is not installed. Nothing was measured.
-    BenchError
-        If the older file cannot be read.
+    Raises `DefinitionError` if a type is invalid. Raises `ProgramMissingError` if a tool is not
+    installed. Nothing was measured. Raises `BenchError` if the older file cannot be read.
     """
     check_types_or_all(given)
     old = None if given.compare is None else read_results(given.compare)

@@ -57,10 +57,7 @@ class Change:
 def compare(old: Iterable[Result], new: Iterable[Result], threshold: float) -> Iterator[Change]:
     """Yield the figures of converters in both sets that changed by more than a threshold.
 
-    Parameters
-    ----------
-    threshold : float
-        Largest change to ignore, divided by the old figure: 0.02 is two percent.
+    * `threshold`: largest change to ignore, divided by the old figure: 0.02 is two percent.
     """
     before = {result.key: result for result in old}
     for result in new:

@@ -115,12 +115,8 @@ class Cycles:
 def count_cycles(converter: Converter, message: Message, stated: Stated = STATED) -> Cycles:
     """Run a converter with the stated messages, or with fewer if they reach `MOST_BEATS`.
 
-    Parameters
-    ----------
-    converter : Deserializer or Serializer
-        The converter, not yet elaborated.
-    message : Message
-        The message type of the converter.
+    * `converter`: the converter, not yet elaborated.
+    * `message`: the message type of the converter.
     """
     sent, packets = stated_messages(converter.plan, message, stated)
 

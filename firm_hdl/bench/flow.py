@@ -76,21 +76,14 @@ def measure(
 ) -> Measured:
     """Measure a circuit.
 
-    Parameters
-    ----------
-    rtlil : str
-        As `amaranth.back.rtlil.convert` returns it, with the name ``top``. Its clock is ``clk``.
-    seeds : sequence of int
-        Seeds of nextpnr, one for each run.
-    mapping : str
-        Commands of Yosys before the mapping, such as ``scratchpad -set abc9.D 4000``.
-    report : callable
-        Called after each run.
+    * `rtlil`: as `amaranth.back.rtlil.convert` returns it, with the name ``top``. Its clock is
+      ``clk``.
+    * `seeds`: seeds of nextpnr, one for each run.
+    * `mapping`: commands of Yosys before the mapping, such as ``scratchpad -set abc9.D 4000``.
+    * `report`: called after each run.
 
-    Raises
-    ------
-    BenchError
-        If the circuit has no area. If it has no clock rate, `Measured.problem` says why.
+    Raises `BenchError` if the circuit has no area. If it has no clock rate, `Measured.problem` says
+    why.
     """
     yosys = find_yosys()
     placer = device.placer if seeds else None

@@ -39,10 +39,7 @@ class CriticalPath:
 def critical_path(report: Mapping[str, Any], names: Names) -> CriticalPath:
     """Find the path from register to register in a report of nextpnr.
 
-    Raises
-    ------
-    BenchError
-        If the report has no such path.
+    Raises `BenchError` if the report has no such path.
     """
     for found in report.get("critical_paths", []):
         if "async" not in found["from"] and "async" not in found["to"]:
@@ -92,10 +89,7 @@ _PACKED = re.compile(r"_(?:DFF)?LC$|\$.*$")
 def top_module(netlist: Mapping[str, Any]) -> dict[str, Any]:
     """Return the module ``top`` of a netlist as `write_json` writes it.
 
-    Raises
-    ------
-    BenchError
-        If there is none, or if it has no cells.
+    Raises `BenchError` if there is none, or if it has no cells.
     """
     top: dict[str, Any] = netlist.get("modules", {}).get("top", {})
     if not top.get("cells"):
@@ -115,10 +109,7 @@ class Names:
     such as ``fill_LUT4_A_Z``. These names are not used, because the choice of the neighbour is
     arbitrary.
 
-    Parameters
-    ----------
-    top : mapping
-        A module, as :func:`top_module` returns it.
+    * `top`: a module, as :func:`top_module` returns it.
     """
 
     def __init__(self, top: Mapping[str, Any]):

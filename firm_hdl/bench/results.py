@@ -146,12 +146,8 @@ def _entry(result: Result) -> dict[str, Any]:
 def read_results(path: str | Path) -> list[Result]:
     """Read a file of results.
 
-    Raises
-    ------
-    BenchError
-        If the file is not a file of results.
-    OSError
-        If the file cannot be read.
+    Raises `BenchError` if the file is not a file of results. Raises `OSError` if the file cannot be
+    read.
     """
     try:
         found = json.loads(read_file(path, MOST_BYTES))

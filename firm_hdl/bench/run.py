@@ -43,10 +43,7 @@ def measure_once(
     A file's name is a hash of the RTLIL, the device's options, the seeds, and the versions of the
     tools. A result without clock rates for all seeds is not kept.
 
-    Parameters
-    ----------
-    folder : Path or None
-        Created if it does not exist; `None`: measure always.
+    * `folder`: created if it does not exist; `None`: measure always.
     """
     if folder is None:
         return measure(rtlil, device, seeds, mapping=mapping)

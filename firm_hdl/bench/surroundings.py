@@ -29,20 +29,11 @@ UNREGISTERED = ("clk", "rst")
 def surround(top: dict[str, Any], placer: Placer) -> int:
     """Put flip-flops outside of all ports except clock and reset; add pins if the device needs any.
 
-    Parameters
-    ----------
-    top : dict
-        A module, as `top_module` returns it. It is changed.
+    * `top`: a module, as `top_module` returns it. It is changed.
 
-    Returns
-    -------
-    int
-        Number of flip-flops next to ports.
+    Returns the number of flip-flops next to ports.
 
-    Raises
-    ------
-    BenchError
-        If the module has no port ``clk``.
+    Raises `BenchError` if the module has no port ``clk``.
     """
     if "clk" not in top["ports"]:
         raise BenchError("the circuit has no clock 'clk', so it has no clock rate")

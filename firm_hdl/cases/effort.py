@@ -44,10 +44,7 @@ OF_THE_TYPE = ("depth", "types", "leaves", "dynamic_leaves", "min_bytes", "shift
 def figures(message: Message, plan: Plan, packets: Sequence[bytes]) -> dict[str, float]:
     """Return figures by name.
 
-    Parameters
-    ----------
-    packets : sequence of bytes
-        The packets of all cases.
+    * `packets`: the packets of all cases.
     """
     of_the_type = metrics_of(message, plan.wire)
     found: dict[str, float] = {name: getattr(of_the_type, name) for name in OF_THE_TYPE}
@@ -92,10 +89,7 @@ LEAST_LEAVES = 8
 def message_limit(min_bytes: int) -> int:
     """Return the largest message that converters are tested with.
 
-    Parameters
-    ----------
-    min_bytes : int
-        The size of the type's smallest message.
+    * `min_bytes`: the size of the type's smallest message.
     """
     return MAX_MESSAGE_BYTES + (min_bytes if min_bytes > MAX_MESSAGE_BYTES // 2 else 0)
 
@@ -168,20 +162,12 @@ def packets_to_simulate(
 ) -> list[int]:
     """Choose packets to simulate, all of them if that is not too much.
 
-    Parameters
-    ----------
-    packets : sequence of bytes
-        At least one packet.
-    taken : sequence of set of Edge
-        The decisions that each packet takes.
-    most : int
-        The most work of the chosen packets together. The first packet may be more work. Packets
-        with new decisions may bring the work to `MORE_FOR_NEW` times this limit.
+    * `packets`: at least one packet.
+    * `taken`: the decisions that each packet takes.
+    * `most`: the most work of the chosen packets together. The first packet may be more work.
+      Packets with new decisions may bring the work to `MORE_FOR_NEW` times this limit.
 
-    Returns
-    -------
-    list of int
-        Indices of packets, in their order.
+    Returns the indices of packets, in their order.
     """
     works = [work_of(plan, len(packet)) for packet in packets]
     if sum(works) <= most:

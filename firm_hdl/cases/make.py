@@ -101,12 +101,8 @@ def make_cases(
 ) -> Iterator[Case]:
     """Yield the cases of a type, as many as are needed for all lengths.
 
-    Parameters
-    ----------
-    name : str
-        ``package/msg/Type``.
-    most : int or None
-        The maximum number of cases; `None`: as many as the lengths need.
+    * `name`: ``package/msg/Type``.
+    * `most`: the maximum number of cases; `None`: as many as the lengths need.
     """
     visits: dict[tuple[str, ...], _Visits] = {}
     number = 0

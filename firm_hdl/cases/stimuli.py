@@ -36,10 +36,7 @@ def stimuli(message: Message, plan: Plan) -> list[bytes]:
 def stimulus_cases(judge: Judge, plan: Plan) -> Iterator[Case]:
     """Yield the cases whose packets are the stimuli of a type.
 
-    Raises
-    ------
-    NotJudgedError
-        If rosbags cannot write the type.
+    Raises `NotJudgedError` if rosbags cannot write the type.
     """
     cases = make_cases(
         judge.oracle, judge.name, wire=plan.wire, bus_bytes=plan.bus_bytes, most=MOST_PACKETS

@@ -45,19 +45,13 @@ class Judge:
 def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = False) -> Judge:
     """Find the oracle of a type.
 
-    Parameters
-    ----------
-    distro : str or None
-        The distribution, if `message` is one of its types. Then rosbags' own definition is used,
-        if there is one.
-    stand_in : bool
-        Whether a message of numbers may replace a wstring, see
-        :mod:`firm_hdl.cases.wide_oracle`. Then a library that supports wstring has to
-        confirm the bytes.
+    * `distro`: the distribution, if `message` is one of its types. Then rosbags' own definition is
+      used, if there is one.
+    * `stand_in`: whether a message of numbers may replace a wstring, see
+      :mod:`firm_hdl.cases.wide_oracle`. Then a library that supports wstring has to confirm the
+      bytes.
 
-    Raises
-    ------
-    NotJudgedError
+    Raises `NotJudgedError`.
     """
     check_wire(message)
     name = oracle_name(message)
@@ -74,9 +68,7 @@ def judge_of(message: Message, distro: str | None = None, *, stand_in: bool = Fa
 def resolved_oracle(message: Message, *, stand_in: bool = False) -> RosbagsOracle:
     """Return an oracle with a type and its nested types, defined by their resolved fields.
 
-    Raises
-    ------
-    NotJudgedError
+    Raises `NotJudgedError`.
     """
     wide: dict[str, str] = {}
     if stand_in:

@@ -61,10 +61,7 @@ _ALIASES = {"secs": "sec", "nsecs": "nanosec"}
 def bits_of(number: float, size: int) -> int:
     """Return the bits of a Python float as a float of `size` bytes.
 
-    Raises
-    ------
-    OverflowError
-        If the number is too large for that size.
+    Raises `OverflowError` if the number is too large for that size.
     """
     bits, code = _FLOATS[size]
     return int(struct.unpack(bits, struct.pack(code, number))[0])
@@ -206,10 +203,7 @@ def _pack(kind: FieldType, value: Plain, parts: list[bytes]) -> None:
 def unpacked(kind: FieldType, data: bytes) -> Plain:
     """Read what :func:`packed` writes.
 
-    Raises
-    ------
-    ValueError
-        If the data is too short or too long.
+    Raises `ValueError` if the data is too short or too long.
     """
     reader = _Reader(data)
     try:

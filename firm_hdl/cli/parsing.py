@@ -18,10 +18,7 @@ class Parser(argparse.ArgumentParser):
 
     Every error is reported with the usage of the subcommand in which it is.
 
-    Parameters
-    ----------
-    examples : sequence of str
-        Command lines, which the help shows.
+    * `examples`: command lines, which the help shows.
     """
 
     def __init__(self, *, examples: Sequence[str] = (), **options: Any) -> None:

@@ -19,10 +19,8 @@ def take_spellings(args: argparse.Namespace) -> None:
 
     A file of a definition gives its type, and its package becomes the first folder of ``--path``.
 
-    Raises
-    ------
-    DefinitionError
-        If a file is in no package, or two files are in different packages of one name.
+    Raises `DefinitionError` if a file is in no package, or two files are in different packages of
+    one name.
     """
     given = [args.type] if hasattr(args, "type") else list(getattr(args, "types", ()))
     folders: dict[str, str] = {}

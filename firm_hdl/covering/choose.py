@@ -49,10 +49,7 @@ def features(message: Message, plan: Plan) -> frozenset[str]:
 def all_features(library: Library, message: Message, plan: Plan) -> frozenset[str]:
     """Return the features of a type, of all families.
 
-    Parameters
-    ----------
-    library : Library
-        The library of the message; it has the language of each definition.
+    * `library`: the library of the message; it has the language of each definition.
     """
     found = {f"grammar: {name}" for name in _grammar(library, message)}
     found |= {f"definition: {name}" for name in _meaning(message)}
@@ -81,10 +78,7 @@ def _grammar(library: Library, message: Message) -> Iterator[str]:
 def productions(text: str, dialect: Dialect, *, is_idl: bool = False) -> frozenset[str]:
     """List the grammar productions of a text; a part with a syntax error has none.
 
-    Parameters
-    ----------
-    text : str
-        Text of one message, or of a whole IDL file.
+    * `text`: text of one message, or of a whole IDL file.
     """
     trees = idl_tree(text) if is_idl else line_trees(text, dialect)
     return frozenset(found for tree in trees for found in _productions(tree))
@@ -171,13 +165,9 @@ def _kind(kind: Primitive | String | Message) -> str:
 def choose(types: Mapping[str, Iterable[str]], costs: Mapping[str, float]) -> list[Chosen]:
     """Choose types that together have every feature.
 
-    Parameters
-    ----------
-    types : mapping of str to iterable of str
-        Features by name of type.
-    costs : mapping of str to float
-        Cost of testing each type, above zero. If several types add equally many features per cost,
-        the first by name is taken.
+    * `types`: features by name of type.
+    * `costs`: cost of testing each type, above zero. If several types add equally many features per
+      cost, the first by name is taken.
     """
     left = {name: set(found) for name, found in types.items()}
     missing = set().union(*left.values()) if left else set()

@@ -46,10 +46,7 @@ def add_cover(parser: argparse.ArgumentParser) -> None:
 def read_chosen(path: str | Path) -> list[str]:
     """Read the names of types from a file that ``--out`` wrote.
 
-    Raises
-    ------
-    BuildError
-        If the file names no types or is not UTF-8 text.
+    Raises `BuildError` if the file names no types or is not UTF-8 text.
     """
     try:
         lines = read_file(path, 1 << 24).decode("utf-8").splitlines()

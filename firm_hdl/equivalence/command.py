@@ -87,10 +87,7 @@ def converter_vhdl(
 
     The VHDL is that of the entity with flat ports, without the comments at the head of the files.
 
-    Raises
-    ------
-    BuildError
-        If the converter cannot be built with these options.
+    Raises `BuildError` if the converter cannot be built with these options.
     """
     plan = plan_of(message, wire, bus_bytes, max_message_bytes)
     check_size(plan)
@@ -115,17 +112,10 @@ def prove_converter(
 ) -> Proof:
     """Prove the VHDL of one converter of a message type.
 
-    Parameters
-    ----------
-    timeout : float
-        Seconds for each solver.
+    * `timeout`: seconds for each solver.
 
-    Raises
-    ------
-    BuildError
-        If the converter cannot be built with these options.
-    ProofError
-        As for `prove`.
+    Raises `BuildError` if the converter cannot be built with these options. Raises `ProofError`: as
+    for `prove`.
     """
     rtlil, vhdl = converter_vhdl(
         message,
@@ -199,10 +189,8 @@ def add_timeout(command: argparse.ArgumentParser) -> None:
 def run_prove(given: argparse.Namespace) -> int:
     """Run the command; return 0 if all converters are proved equal, and 1 if not.
 
-    Raises
-    ------
-    DefinitionError, BuildError
-        If a type is invalid, or the options do not fit it. Nothing was proved.
+    Raises `DefinitionError` or `BuildError` if a type is invalid, or the options do not fit it.
+    Nothing was proved.
     """
     check_types_or_all(given)
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
@@ -245,10 +233,7 @@ def _all_messages(library: Library, types: Iterable[str]) -> list[str]:
 def run_proofs(tasks: Sequence[ProofTask], jobs: int | None, *, with_summary: bool) -> int:
     """Run tasks, and print the result of each; return the exit status.
 
-    Parameters
-    ----------
-    with_summary : bool
-        Print a summary.
+    * `with_summary`: print a summary.
     """
     try:
         find_tools()

@@ -57,15 +57,9 @@ class Module:
 def parse_dump(text: str) -> dict[str, Module]:
     """Parse a dump.
 
-    Returns
-    -------
-    dict of str to Module
-        The user's modules by name, without the backslash, the outermost one first.
+    Returns the user's modules by name, without the backslash, the outermost one first.
 
-    Raises
-    ------
-    ProofError
-        If the text has an unknown statement.
+    Raises `ProofError` if the text has an unknown statement.
     """
     lines = [line.strip() for line in text.splitlines()]
     lines = [line for line in lines if line and not line.startswith("#")]

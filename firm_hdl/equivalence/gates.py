@@ -67,14 +67,8 @@ _CONCATENATIONS = frozenset("$concat2 $concat3 $concat4 $concatn".split())
 class Gate:
     """A gate and its connections.
 
-    Parameters
-    ----------
-    instance : Instance
-    inputs : mapping of str to Bits
-    width : int
-        Width of the output.
-    fresh : callable
-        Makes nets that may have any value.
+    * `width`: width of the output.
+    * `fresh`: makes nets that may have any value.
     """
 
     def __init__(
@@ -274,14 +268,9 @@ def operator_cell(
 ) -> Cell:
     """Return an operator with the operands A and, if it has two, B.
 
-    Parameters
-    ----------
-    kind : str
-        Type of the cell in Yosys.
-    signed : bool
-        The operands are signed.
-    second_signed : bool or None
-        B is signed; `None`: B is as `signed` says.
+    * `kind`: type of the cell in Yosys.
+    * `signed`: the operands are signed.
+    * `second_signed`: B is signed; `None`: B is as `signed` says.
     """
     parameters: dict[str, int | str] = {"Y_WIDTH": len(output)}
     for port, bits in inputs.items():

@@ -10,30 +10,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
-__all__ = ["Match", "Names", "match_names", "word_name"]
+from firm_hdl.vhdl.module import EntityNames
+
+__all__ = ["Match", "match_names", "word_name"]
 
 _Path: TypeAlias = tuple[str, ...]
 _MODULE = re.compile(r"module \\(\S+)$")
 _CELL = re.compile(r"cell \\(\S+) \\(\S+)$")
 _MEMORY = re.compile(r"memory width \d+ size (\d+) \\(\S+)$")
-
-
-class Names(Protocol):
-    """The names of one module in VHDL; see `firm_hdl.vhdl.convert.EntityNames`."""
-
-    @property
-    def signals(self) -> Mapping[str, str]:
-        """Names of signals, by wire of the RTLIL."""
-
-    @property
-    def memories(self) -> Mapping[str, str]:
-        """Names of memories, by memory of the RTLIL."""
-
-    @property
-    def instances(self) -> Mapping[str, str]:
-        """Labels of instances, by cell of the RTLIL."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,17 +44,12 @@ def word_name(memory: str, place: int) -> str:
     return f"{memory}[{place}]"
 
 
-def match_names(rtlil: str, top: str, entities: Mapping[str, Names]) -> Match:
+def match_names(rtlil: str, top: str, entities: Mapping[str, EntityNames]) -> Match:
     """Match the signals and memories of both sides.
 
-    Parameters
-    ----------
-    rtlil : str
-        RTLIL text; only its modules, instances and sizes of memories are read.
-    top : str
-        The outermost module.
-    entities : mapping of str to Names
-        Names in VHDL by module.
+    * `rtlil`: RTLIL text; only its modules, instances and sizes of memories are read.
+    * `top`: the outermost module.
+    * `entities`: names in VHDL by module.
     """
     modules = _modules(rtlil)
     signals: dict[_Path, _Path] = {}

@@ -36,14 +36,9 @@ def memory_of(cell: Mapping[str, Any]) -> str | None:
 class MemoryCircuit:
     """The registers and gates of one memory.
 
-    Parameters
-    ----------
-    name : str
-        Name in the flattened design, for messages.
-    width, depth : int
-        Bits per word, and number of words.
-    fresh : callable
-        Makes new nets.
+    * `name`: name in the flattened design, for messages.
+    * `width`, `depth`: bits per word, and number of words.
+    * `fresh`: makes new nets.
     """
 
     name: str
@@ -61,12 +56,8 @@ class MemoryCircuit:
     def add(self, cells: Sequence[Mapping[str, Any]], bits: _Read) -> None:
         """Add the contents and all ports.
 
-        Parameters
-        ----------
-        cells : sequence of mapping
-            The cells of the memory, as Yosys writes them in JSON.
-        bits : callable
-            Returns the bits of a port, with a new net for each undefined bit.
+        * `cells`: the cells of the memory, as Yosys writes them in JSON.
+        * `bits`: returns the bits of a port, with a new net for each undefined bit.
         """
         init = self._contents([cell for cell in cells if cell["type"] == "$meminit_v2"])
         writes = sorted(self._ports(cells, "$memwr_v2", bits), key=_number)

@@ -48,10 +48,8 @@ class Miter:
 
         The inputs are called ``in0`` and so on; claim n is bit n of the output ``differs``.
 
-        Parameters
-        ----------
-        values : bool
-            Add outputs with the values of both sides of each claim, ``amaranth0`` and ``vhdl0``.
+        * `values`: add outputs with the values of both sides of each claim, ``amaranth0`` and
+          ``vhdl0``.
         """
         cells: dict[str, Any] = {}
         net = max(
@@ -110,12 +108,8 @@ def make_miter(
 ) -> Miter:
     """Combine two circuits.
 
-    Parameters
-    ----------
-    ports : mapping of str to str
-        Names of ports in VHDL by Amaranth's.
-    signals : mapping
-        Paths of signals in VHDL by those in the RTLIL.
+    * `ports`: names of ports in VHDL by Amaranth's.
+    * `signals`: paths of signals in VHDL by those in the RTLIL.
     """
     return _Maker(amaranth, vhdl, ports, signals).run()
 

@@ -66,12 +66,8 @@ class Answer:
 def solve(miter: Miter, tools: Tools, folder: Path, timeout: float) -> Answer:
     """Prove all claims of a miter, or find inputs for which one does not hold.
 
-    Parameters
-    ----------
-    folder : Path
-        Folder for temporary files.
-    timeout : float
-        Time limit of each of the two solvers in seconds.
+    * `folder`: folder for temporary files.
+    * `timeout`: time limit of each of the two solvers in seconds.
     """
     if not miter.claims:
         return Answer(equal=True)

@@ -31,12 +31,8 @@ _STATE = re.compile(r"\$(\w*dff\w*|ff|sr|mem\w*)")
 def read_rtlil(text: str, tools: Tools, folder: Path, timeout: float | None) -> Circuit:
     """Read a design.
 
-    Parameters
-    ----------
-    text : str
-        RTLIL, as `amaranth.back.rtlil.convert` returns it.
-    folder : Path
-        Folder for temporary files.
+    * `text`: RTLIL, as `amaranth.back.rtlil.convert` returns it.
+    * `folder`: folder for temporary files.
     """
     (folder / "amaranth.il").write_text(text, encoding="utf-8")
     tools.run_yosys(folder, _SCRIPT.format(name="amaranth"), timeout)

@@ -46,10 +46,8 @@ class Tools:
 def answer_of(tool: str, file: Path) -> str:
     """Return the text of a file that a tool has written, and delete it, so that none is read twice.
 
-    Raises
-    ------
-    ToolError
-        If the file does not exist, because a tool may end without an error and without a result.
+    Raises `ToolError` if the file does not exist, because a tool may end without an error and
+    without a result.
     """
     text = made_by(tool, file).read_text(encoding="utf-8")
     file.unlink()
@@ -60,17 +58,10 @@ def answer_of(tool: str, file: Path) -> str:
 def find_tools(*, ghdl: bool = True) -> Tools:
     """Find GHDL as `verify` does, and Yosys in the environment or on the PATH, ready to run.
 
-    Parameters
-    ----------
-    ghdl : bool
-        If not, `Tools.ghdl` is empty.
+    * `ghdl`: if not, `Tools.ghdl` is empty.
 
-    Raises
-    ------
-    ToolError
-        If the package of Yosys is installed and does not run.
-    ProgramMissingError
-        If a tool is missing; the text says how to install it.
+    Raises `ToolError` if the package of Yosys is installed and does not run. Raises
+    `ProgramMissingError` if a tool is missing; the text says how to install it.
     """
     missing = []
     found: tuple[str, ...] = ()

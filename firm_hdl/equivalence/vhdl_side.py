@@ -20,17 +20,10 @@ _IGNORED = frozenset("$assert $assume $cover $assert_cover".split())
 def read_vhdl(dump: str, memories: Mapping[tuple[str, ...], int] | None = None) -> Circuit:
     """Read the outermost entity of a dump.
 
-    Parameters
-    ----------
-    dump : str
-        Output of ``ghdl --synth -dm --out=dump``.
-    memories : mapping or None
-        Numbers of words by path of the memory. Words become signals of their own.
+    * `dump`: output of ``ghdl --synth -dm --out=dump``.
+    * `memories`: numbers of words by path of the memory. Words become signals of their own.
 
-    Returns
-    -------
-    Circuit
-        Names are in lower case, because VHDL ignores case.
+    Names are in lower case, because VHDL ignores case.
     """
     return _Flattener(parse_dump(dump), memories or {}).run()
 

@@ -25,10 +25,7 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
 
     Results are those of `of_each`.
 
-    Raises
-    ------
-    DefinitionError
-        If the distribution is of ROS 2.
+    Raises `DefinitionError` if the distribution is of ROS 2.
     """
     _require(library, "ros1", "md5 sums are for ROS 1; for ROS 2, use 'firm-hdl hash'")
 
@@ -43,10 +40,7 @@ def md5_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defini
 def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], DefinitionError | None]:
     """List type hashes, each with the name of its type. Results are those of `of_each`.
 
-    Raises
-    ------
-    DefinitionError
-        If the distribution is of ROS 1.
+    Raises `DefinitionError` if the distribution is of ROS 1.
     """
     _require(library, "ros2", "type hashes are for ROS 2; for ROS 1, use 'firm-hdl md5'")
 
@@ -80,18 +74,10 @@ def of_each(
 ) -> tuple[list[_T], DefinitionError | None]:
     """Load messages, services and actions, each once, and make something of each.
 
-    Parameters
-    ----------
-    library : Library
-    names : iterable of str
-        As for `Library.interface`; also the services that ROS 2 derives from an action.
-    make : callable
-        May raise DefinitionError, too.
+    * `names`: as for `Library.interface`; also the services that ROS 2 derives from an action.
+    * `make`: may raise DefinitionError, too.
 
-    Returns
-    -------
-    tuple of list and DefinitionError or None
-        What was made, and the errors of all other types.
+    Returns what was made, and the errors of all other types.
     """
     made: dict[tuple[type, str], _T] = {}
     problems: dict[str, Diagnostic] = {}

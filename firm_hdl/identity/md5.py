@@ -19,10 +19,7 @@ def md5sum(interface: Message | Service) -> str:
 
     Actions have none; their messages do.
 
-    Raises
-    ------
-    ValueError
-        If the definition is of ROS 2.
+    Raises `ValueError` if the definition is of ROS 2.
     """
     if interface.dialect != "ros1":
         raise ValueError(f"Only types of ROS 1 have md5 sums, and {interface} is of ROS 2")

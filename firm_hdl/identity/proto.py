@@ -16,21 +16,11 @@ __all__ = ["proto"]
 def proto(interface: Interface, *, quotes: bool = True) -> str:
     """Print an example of a type.
 
-    Parameters
-    ----------
-    interface : Message, Service or Action
-    quotes : bool
-        Whether double quotes enclose the text, which is the default of both tools.
+    * `quotes`: whether double quotes enclose the text, which is the default of both tools.
 
-    Returns
-    -------
-    str
-        The text without the last line end.
+    Returns the text without the last line end.
 
-    Raises
-    ------
-    DefinitionError
-        If the text would be too long.
+    Raises `DefinitionError` if the text would be too long.
     """
     match interface:
         case Message():

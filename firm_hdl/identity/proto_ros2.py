@@ -49,10 +49,7 @@ class _Size:
 def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
     """Count the text of a type before it is written.
 
-    Raises
-    ------
-    DefinitionError
-        If the text would be too long.
+    Raises `DefinitionError` if the text would be too long.
     """
     characters = lines = 0
     for item in message.fields:

@@ -52,15 +52,9 @@ _Member: TypeAlias = "tuple[str, FieldType | Service]"
 def type_hash(interface: Interface) -> str:
     """Compute the type hash of a message, a service or an action of ROS 2.
 
-    Returns
-    -------
-    str
-        ``RIHS01_`` and 64 hexadecimal digits.
+    Returns ``RIHS01_`` and 64 hexadecimal digits.
 
-    Raises
-    ------
-    ValueError
-        As `type_description` does.
+    Raises `ValueError`: as `type_description` does.
     """
     text = json.dumps(type_description(interface))
     return f"RIHS01_{hashlib.sha256(text.encode()).hexdigest()}"
@@ -69,11 +63,8 @@ def type_hash(interface: Interface) -> str:
 def type_description(interface: Interface) -> dict[str, Any]:
     """Describe a type in the form of ``type_description_interfaces/msg/TypeDescription``.
 
-    Raises
-    ------
-    ValueError
-        If the definition is of ROS 1, or if it is or has a service without an event message.
-        Services have event messages and hashes since iron.
+    Raises `ValueError` if the definition is of ROS 1, or if it is or has a service without an event
+    message. Services have event messages and hashes since iron.
     """
     if interface.dialect != "ros2":
         raise ValueError(f"Only types of ROS 2 have type hashes, and {interface} is of ROS 1")

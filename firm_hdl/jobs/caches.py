@@ -39,16 +39,10 @@ _log = logging.getLogger(__name__)
 def private_folder(folder: Path) -> Path:
     """Make a folder that this user alone can write, or check that a folder is one.
 
-    Returns
-    -------
-    Path
-        Absolute, and without links.
+    Its path is absolute, and without links.
 
-    Raises
-    ------
-    OSError
-        If the folder cannot be made, is a link, or belongs to another user, or if other users can
-        write it or replace it.
+    Raises `OSError` if the folder cannot be made, is a link, or belongs to another user, or if
+    other users can write it or replace it.
     """
     folder = Path(os.path.abspath(folder))
     folder = Path(os.path.realpath(folder.parent), folder.name)
@@ -114,21 +108,12 @@ def kept_program(
 
     Programs that were not used for 30 days are removed when another one is kept.
 
-    Parameters
-    ----------
-    kind : str
-        Lower-case letters, with which the name of the file begins.
-    parts : iterable of str
-        All that the program depends on.
-    make : callable
-        Compiles the program in an empty folder, and returns its file.
-    folder : Path or None
-        Where programs are kept; `None`: :func:`cache_folder`.
+    * `kind`: lower-case letters, with which the name of the file begins.
+    * `parts`: all that the program depends on.
+    * `make`: compiles the program in an empty folder, and returns its file.
+    * `folder`: where programs are kept; `None`: :func:`cache_folder`.
 
-    Raises
-    ------
-    OSError
-        If the folder was named and cannot be used; what `make` raises.
+    Raises `OSError` if the folder was named and cannot be used; what `make` raises.
     """
     digest = hashlib.sha256()
     for part in parts:

@@ -51,10 +51,7 @@ class ExecutorError(ValueError):
 def check_executor(name: str) -> str:
     """Check the name of an executor, and return it.
 
-    Raises
-    ------
-    ExecutorError
-        If the name is not that of an executor.
+    Raises `ExecutorError` if the name is not that of an executor.
     """
     address = name.removeprefix(DASK)
     host, _, port = address.rpartition(":")
@@ -72,26 +69,15 @@ def run_each(
 ) -> Generator[tuple[K, R | Exception], None, None]:
     """Call a function for each task, and yield results as they come.
 
-    Parameters
-    ----------
-    tasks : sequence of (key, arguments)
-    executor : str
-        ``processes``, or ``dask://HOST:PORT`` with the address of a scheduler.
-    jobs : int or None
-        Number of processes on this machine (`None`: one per processor); 1 runs everything in this
-        process. On a cluster, the largest number of running tasks (`None`: as many as it has
-        threads).
+    * `executor`: ``processes``, or ``dask://HOST:PORT`` with the address of a scheduler.
+    * `jobs`: number of processes on this machine (`None`: one per processor); 1 runs everything in
+      this process. On a cluster, the largest number of running tasks (`None`: as many as it has
+      threads).
 
-    Yields
-    ------
-    key, result
-        The result of `work`, or the exception that it raised, or an `ExecutorError` if its process
-        died.
+    Yields each key with the result of `work`, or with the exception that it raised, or with an
+    `ExecutorError` if its process died.
 
-    Raises
-    ------
-    ExecutorError
-        If there is no such executor, or the cluster was lost.
+    Raises `ExecutorError` if there is no such executor, or the cluster was lost.
     """
     check_executor(executor)
     if executor != PROCESSES:
@@ -156,10 +142,7 @@ def _distribute(
 ) -> Generator[tuple[K, R | Exception], None, list[tuple[K, tuple[Any, ...]]]]:
     """Submit tasks until none remains, or until a worker has died.
 
-    Returns
-    -------
-    list of (key, arguments)
-        Tasks that were running when the worker died.
+    Returns the tasks that were running when the worker died.
     """
     running: dict[Future[R], tuple[K, tuple[Any, ...]]] = {}
     suspects: list[tuple[K, tuple[Any, ...]]] = []

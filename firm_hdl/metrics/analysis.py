@@ -185,10 +185,7 @@ class Analyses:
     def metrics(self, message: Message) -> Metrics:
         """Give the figures of a type.
 
-        Raises
-        ------
-        DefinitionError
-            If the figures have too many digits to be printed.
+        Raises `DefinitionError` if the figures have too many digits to be printed.
         """
         if message.leaf_count > _MAX_LEAVES:
             problem = f"{message.name} has more than 10^100 fields when it is written out"
@@ -389,11 +386,7 @@ _HEADINGS = {
 def report(rows: Iterable[Metrics], form: str) -> str:
     """Write figures in one of the formats.
 
-    Parameters
-    ----------
-    rows : iterable of Metrics
-    form : str
-        A key of `FORMATS`.
+    * `form`: a key of `FORMATS`.
     """
     return FORMATS[form](list(rows))
 
@@ -446,19 +439,10 @@ def metrics_text(
 ) -> tuple[str, DefinitionError | None]:
     """Write the figures of types. A service or an action gives the figures of its messages.
 
-    Parameters
-    ----------
-    library : Library
-    names : iterable of str
-    form : str
-        A key of `FORMATS`.
-    wire : "ros1", "cdr" or None
-        `None`: the wire format of the library's dialect.
+    * `form`: a key of `FORMATS`.
+    * `wire`: `None` is the wire format of the library's dialect.
 
-    Returns
-    -------
-    tuple of str and DefinitionError or None
-        The text, and the errors of the types that are not in it.
+    Returns the text, and the errors of the types that are not in it.
     """
     analyses = Analyses(wire or WIRE_OF[library.dialect])
     rows: dict[str, Metrics] = {}

@@ -74,11 +74,7 @@ def word_of(data: bytes | None) -> str:
 class Cursor:
     """A place in a file, and the number of bytes that may be read from there.
 
-    Parameters
-    ----------
-    file : binary file
-        A file that is at this place.
-    left : int
+    * `file`: a file that is at this place.
     """
 
     def __init__(self, file: BinaryIO, left: int) -> None:
@@ -129,10 +125,7 @@ class Cursor:
 class Budget:
     """How much a recording may still be decompressed to, and how long its definitions may be.
 
-    Parameters
-    ----------
-    compressed : int
-        Size of the recording's files, in bytes.
+    * `compressed`: size of the recording's files, in bytes.
     """
 
     def __init__(self, compressed: int) -> None:

@@ -27,28 +27,12 @@ class Recording:
 
     Its files are read one after the other, and none of them stays open.
 
-    Parameters
-    ----------
-    path : str or path
-
-    Attributes
-    ----------
-    path : str
-    dialect : "ros1" or "ros2"
-    distro : str
-        The distribution that the recording names as its origin; empty if there is none.
-    topics : list of Topic
-    schemas : list of Schema
-        The definitions, in the order of the recording.
-
-    Raises
-    ------
-    DefinitionError
-        If the recording cannot be read. It has no span.
+    Raises `DefinitionError` if the recording cannot be read. It has no span.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = os.fspath(path)
+        # The distribution that the recording names as its origin; empty if there is none.
         self.distro = self._compression = ""
         self._files = [self.path]
         topics: dict[Topic, None] = {}
@@ -64,6 +48,7 @@ class Recording:
                     raise UnreadableError(f"it has more than {MAX_TOPICS} topics")
                 has_bag = has_bag or isinstance(file, bag.BagFile)
                 self.distro = self.distro or file.distro
+        # The definitions, in the order of the recording.
         self.topics, self.schemas = list(topics), list(schemas)
         # Files of MCAP may be of ROS 1, too.
         encodings = {schema.encoding for schema in self.schemas}
@@ -73,15 +58,9 @@ class Recording:
     def messages(self, topics: Container[Topic]) -> Iterator[tuple[Topic, int, bytes]]:
         """Yield topic, time in nanoseconds and bytes of each message, in the order of the files.
 
-        Parameters
-        ----------
-        topics : container of Topic
-            Those whose messages are read.
+        * `topics`: those whose messages are read.
 
-        Raises
-        ------
-        DefinitionError
-            If the recording cannot be read to its end.
+        Raises `DefinitionError` if the recording cannot be read to its end.
         """
         with self._reported():
             for file, budget in self._opened():

@@ -38,9 +38,6 @@ class RecordingFile(ABC):
 
     Attributes
     ----------
-    topics : dict of int to Topic
-        By the numbers that messages refer to.
-    schemas : list of Schema
     distro : str
         The distribution that the file names as its origin; empty if there is none.
     """
@@ -48,7 +45,7 @@ class RecordingFile(ABC):
     distro = ""
 
     def __init__(self) -> None:
-        self.topics: dict[int, Topic] = {}
+        self.topics: dict[int, Topic] = {}  # By the numbers that messages refer to.
         self.schemas: list[Schema] = []
 
     @abstractmethod

@@ -124,29 +124,13 @@ class Ports:
 class Bench:
     """A design with streams to the outside, ready to run jobs.
 
-    Parameters
-    ----------
-    design : Elaboratable
-        Has ``sync`` as its only clock domain.
-    ports : Ports
-        Its streams.
-    probes : sequence of Value
-        Values that runs may observe.
-    keeps_state : bool
-        Between runs, only reset the design, as in hardware: memories and registers without a reset
-        keep their values. Otherwise each run starts with all initial values.
+    * `design`: has ``sync`` as its only clock domain.
+    * `ports`: its streams.
+    * `probes`: values that runs may observe.
+    * `keeps_state`: between runs, only reset the design, as in hardware: memories and registers
+      without a reset keep their values. Otherwise each run starts with all initial values.
 
-    Raises
-    ------
-    ClockDomainError
-        If the design has another clock domain than `sync`.
-
-    Attributes
-    ----------
-    names : list of str
-        Names of all streams.
-    cycles : int
-        Number of cycles of the last run, even if that run failed.
+    Raises `ClockDomainError` if the design has another clock domain than `sync`.
     """
 
     @search_put_off()
@@ -162,7 +146,7 @@ class Bench:
         self.taps, self.gates = ports.taps, ports.gates
         # Sinks and taps first, because only they are checked and observed.
         self.ports = [*self.sinks.values(), *self.taps.values(), *self.sources.values()]
-        self.names = [*self.sinks, *self.taps, *self.sources]
+        self.names = [*self.sinks, *self.taps, *self.sources]  # Names of all streams.
         if len(set(self.names)) != len(self.names):
             raise ValueError(f"Names of streams must differ, not {', '.join(self.names)}")
         self.payloads = [Value.cast(port.payload) for port in self.ports]
@@ -172,7 +156,7 @@ class Bench:
         # By source: the word and the bit where its payload starts.
         self.places: dict[str, tuple[int, int]] = {}
         self.job: Job | None = None
-        self.cycles = 0
+        self.cycles = 0  # Number of cycles of the last run, even if that run failed.
         self._keeps_state = keeps_state
         self._error: AssertionError | None = None
         top = self._top(design)
@@ -191,11 +175,8 @@ class Bench:
     def run(self, job: Job) -> int:
         """Run a job from reset; return the number of cycles, including those of the settling.
 
-        Raises
-        ------
-        ValueError
-            If the job asks for a waveform, and the bench keeps its state, or for stalls of a stream
-            that does not exist.
+        Raises `ValueError` if the job asks for a waveform, and the bench keeps its state, or for
+        stalls of a stream that does not exist.
         """
         check_stalls(job.options.stalls, self.names)
         vcd = job.options.vcd
@@ -374,12 +355,8 @@ class _Drive:
     def next(self, fired: int, held: int) -> int:
         """Go to the next cycle; return the words that change, as a bit mask.
 
-        Parameters
-        ----------
-        fired : int
-            Bit mask of the ports that transferred in this cycle.
-        held : int
-            Bit mask of the ports whose offered transfer was not taken.
+        * `fired`: bit mask of the ports that transferred in this cycle.
+        * `held`: bit mask of the ports whose offered transfer was not taken.
         """
         held &= self.gates & self.control
         control = self.control

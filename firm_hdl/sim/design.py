@@ -55,22 +55,13 @@ def check_domain(
 ) -> None:
     """Check that a testbench can use streams, given by name, in a clock domain.
 
-    Parameters
-    ----------
-    sends : bool or None
-        Whether the testbench sends on the streams or receives from them; `None`: it only watches.
+    * `sends`: whether the testbench sends on the streams or receives from them; `None`: it only
+      watches.
 
-    Raises
-    ------
-    TypeError
-        If the context or the domain is none.
-    ValueError
-        If the design has the same end of a stream as the testbench.
-    ClockDomainError
-        If the design has no such domain, the domain has no clock, or a stream belongs to registers
-        of other domains.
-    wiring.ConnectionError
-        As :func:`.check_connections`.
+    Raises `TypeError` if the context or the domain is none. Raises `ValueError` if the design has
+    the same end of a stream as the testbench. Raises `ClockDomainError` if the design has no such
+    domain, the domain has no clock, or a stream belongs to registers of other domains. Raises
+    `wiring.ConnectionError`: as :func:`.check_connections`.
     """
     if not isinstance(ctx, SimulatorContext):
         raise TypeError(f"The first argument must be the context of a testbench, not {ctx!r}")
@@ -104,14 +95,9 @@ def check_domain(
 def check_domains(design: Fragment, what: str) -> None:
     """Check that an elaborated design has no other clock domain than `sync`.
 
-    Parameters
-    ----------
-    what : str
-        What simulates the design, for the error.
+    * `what`: what simulates the design, for the error.
 
-    Raises
-    ------
-    ClockDomainError
+    Raises `ClockDomainError`.
     """
     collector = DomainCollector()
     collector(design)
@@ -143,16 +129,11 @@ def _has_clock(ctx: SimulatorContext, domain: ClockDomain) -> bool:
 
 
 class Logic:
-    """The assignments of a design, by the signals that they drive and read.
-
-    Attributes
-    ----------
-    drivers : dict of int to list
-        By the `id` of a driven signal: the domain of each driver, `None` for combinational logic,
-        and the values that it reads.
-    """
+    """The assignments of a design, by the signals that they drive and read."""
 
     def __init__(self, design: Design):
+        # By the `id` of a driven signal: the domain of each driver, `None` for combinational logic,
+        # and the values that it reads.
         self.drivers: dict[int, list[tuple[ClockDomain | None, list[Value]]]] = {}
         self._readers: dict[int, list[tuple[ClockDomain | None, list[Signal]]]] | None = None
         self._assigned = [each for fragment in design.fragments for each in _assigned(fragment)]

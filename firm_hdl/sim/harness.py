@@ -114,15 +114,9 @@ def leaf_name(plan: Plan, leaf: int) -> str:
 class Recorder:
     """Records the transfers of one run.
 
-    Parameters
-    ----------
-    plan : Plan
-    expected : int
-        Number of packets and of statuses that are expected.
-    decodes, encodes : bool
-        Whether the harness has a deserializer, and whether it has a serializer.
-    table : TransferTable or None
-        Transfers that messages require, to name missing leaves.
+    * `expected`: number of packets and of statuses that are expected.
+    * `decodes`, `encodes`: whether the harness has a deserializer, and whether it has a serializer.
+    * `table`: transfers that messages require, to name missing leaves.
     """
 
     def __init__(

@@ -51,10 +51,7 @@ def _by_part(
 ) -> dict[int, list[Statement]]:
     """Return the statements of each part: those that drive its signals, or what does so in them.
 
-    Parameters
-    ----------
-    place : mapping of int to int
-        Number of the part of each signal, by the `id` of the signal.
+    * `place`: number of the part of each signal, by the `id` of the signal.
     """
     parts: dict[int, list[Statement]] = {}
     for statement in statements:

@@ -65,10 +65,7 @@ def encoder_of(leaf: Leaf) -> Callable[[Payload], int]:
 def as_packets(packets: Iterable[bytes]) -> Iterator[bytes]:
     """Return packets of a user, checked: those of a list at once, others when they are taken.
 
-    Raises
-    ------
-    TypeError
-        If it is one packet in place of several, or one of them is not bytes.
+    Raises `TypeError` if it is one packet in place of several, or one of them is not bytes.
     """
     if isinstance(packets, bytes | bytearray | memoryview | str) or not isinstance(
         packets, Iterable
@@ -94,13 +91,9 @@ def packet_beats(
 ) -> Iterator[int]:
     """Yield the beats of a packet, as bits of a packet stream's payload.
 
-    Parameters
-    ----------
-    noise : random.Random or None
-        Generator for the bytes of lanes that are not valid; `None`: these bytes are 0.
-    counts : bool
-        Make `count` random, too, in beats that are not the last. A deserializer ignores `count`
-        there; other components may not.
+    * `noise`: generator for the bytes of lanes that are not valid; `None`: these bytes are 0.
+    * `counts`: make `count` random, too, in beats that are not the last. A deserializer ignores
+      `count` there; other components may not.
     """
     count_at = 8 * bus_bytes
     last_at = count_at + bus_bytes.bit_length()

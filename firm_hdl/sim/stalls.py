@@ -114,12 +114,8 @@ not stalled.
 def check_stalls(plan: StallPlan, names: Iterable[str] | None = None) -> None:
     """Check a user's stalls of the streams with these names; `None`: of any.
 
-    Raises
-    ------
-    TypeError
-        If the plan is not a `StallPlan`.
-    ValueError
-        If it names a stream that does not exist.
+    Raises `TypeError` if the plan is not a `StallPlan`. Raises `ValueError` if it names a stream
+    that does not exist.
     """
     if plan is None or isinstance(plan, Stalls):
         return

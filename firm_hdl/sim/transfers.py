@@ -117,9 +117,7 @@ def checked_transfers(
 ) -> Mapping[int, Sequence[Payload]]:
     """Return a user's transfers of a message, with checked types; values may be wrong on purpose.
 
-    Raises
-    ------
-    TypeError, ValueError
+    Raises `TypeError` or `ValueError`.
     """
     if not isinstance(message, Mapping):
         raise TypeError(f"Transfers must be a dict of lists by leaf, not {message!r}")

@@ -59,10 +59,7 @@ WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-bind
 def run_bench(given: tuple[Options, str], test: Test) -> Record:
     """Build a type and run its bench. Errors are not raised, but are in the record.
 
-    Parameters
-    ----------
-    given : Options, str
-        How to build the type (its paths and wire), and the command of GHDL.
+    * `given`: how to build the type (its paths and wire), and the command of GHDL.
     """
     options, ghdl = given
 
@@ -146,10 +143,7 @@ def _simulate(entity: str, vhdl: Path, ghdl: str) -> Path:
 def _analyse(built: Built, ghdl: str) -> tuple[Path, list[str]]:
     """Analyse all files in a temporary folder. Any message of GHDL is an error.
 
-    Returns
-    -------
-    folder, benches
-        The folder of the VHDL, and the entities to run.
+    Returns the folder of the VHDL, and the entities to run.
     """
     manifest = json.loads((built.folder / MANIFEST).read_text(encoding="utf-8"))["vhdl"]
     vhdl = built.folder.resolve() / str(manifest["folder"])
@@ -196,14 +190,9 @@ def _compare(what: str, got: str, right: str) -> None:
 class Benches(TypesSystem):
     """The test system of generated benches. A test is the bench of a type of one distribution.
 
-    Parameters
-    ----------
-    request : Request
-        `paths`, `wire`, `widths` and `jobs` are used.
+    * `request`: `paths`, `wire`, `widths` and `jobs` are used.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
 
     name = "bench"

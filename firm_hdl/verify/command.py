@@ -63,11 +63,8 @@ _OTHERS = (
 def run_verify(given: argparse.Namespace) -> int:
     """Run what is asked for; return the exit status.
 
-    Raises
-    ------
-    DefinitionError
-        If a definition that is named cannot be used. Without names, the usable types are tested,
-        and the errors in the others are printed at the end.
+    Raises `DefinitionError` if a definition that is named cannot be used. Without names, the usable
+    types are tested, and the errors in the others are printed at the end.
     """
     request = _request(given)
     stage("verify: reads definitions")
@@ -133,14 +130,9 @@ def resolve(request: Request) -> Workload:
 
     Named types that no distribution has are looked up in the active workspace, as with ``--path``.
 
-    Raises
-    ------
-    DefinitionError
-        If a definition that is named cannot be used.
-    UnknownTypeError
-        If a type that is named does not exist.
-    UserError
-        If the board or its node cannot be used.
+    Raises `DefinitionError` if a definition that is named cannot be used. Raises `UnknownTypeError`
+    if a type that is named does not exist. Raises `UserError` if the board or its node cannot be
+    used.
     """
     problems: dict[str, Diagnostic] = {}
     if request.is_ts1_alone:

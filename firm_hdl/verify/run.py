@@ -49,13 +49,9 @@ _FAILS = ", so the run fails"
 def run_workload(work: Workload) -> int:
     """Run the tests of a workload, print a summary, and return the exit status.
 
-    Raises
-    ------
-    UserError
-        If a tool, a library or a file cannot be used.
-    DefinitionError
-        If a definition that is named cannot be used. Without names, the usable types are tested,
-        and the errors in the others are printed at the end.
+    Raises `UserError` if a tool, a library or a file cannot be used. Raises `DefinitionError` if a
+    definition that is named cannot be used. Without names, the usable types are tested, and the
+    errors in the others are printed at the end.
     """
     request = work.request
     try:
@@ -83,12 +79,8 @@ def run_workload(work: Workload) -> int:
 def failure(found: Sequence[Record], request: Request, refused: int = 0) -> str:
     """Return why a run is no success; empty if no test failed, and enough was judged.
 
-    Parameters
-    ----------
-    request : Request
-        If the user named the types, every test has to be judged; otherwise, one.
-    refused : int
-        Definitions with errors.
+    * `request`: if the user named the types, every test has to be judged; otherwise, one.
+    * `refused`: definitions with errors.
     """
     failed = [each.test.title for each in found if isinstance(each.verdict, Failed)]
     reasons = [f"{len(failed)} of {len(found)} tests failed, such as {failed[0]}"] if failed else []

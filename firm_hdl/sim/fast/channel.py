@@ -23,10 +23,7 @@ class Channel:
 
     Neither side can block the other for ever: while this side waits to send, it also receives.
 
-    Parameters
-    ----------
-    own : socket.socket
-        The end of a pair of sockets; the engine has the other one.
+    * `own`: the end of a pair of sockets; the engine has the other one.
     """
 
     engine: ClassVar[Literal["verilator", "amaranth"]]

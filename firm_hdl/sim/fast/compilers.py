@@ -100,22 +100,13 @@ def program_of(
 ) -> Path:
     """Return the program of a design; compile it unless it is in the cache.
 
-    Parameters
-    ----------
-    source : callable
-        Elaborates the design; it is called once there are Verilator and a compiler.
-    options : sequence of str
-        For the compiler, such as ``-O1``, which compiles faster.
-    cache : Path or None
-        Folder of programs, which other users must not be able to write. `None`: the user's cache.
-    report : callable or None
-        Told the stages of a compilation.
+    * `source`: elaborates the design; it is called once there are Verilator and a compiler.
+    * `options`: for the compiler, such as ``-O1``, which compiles faster.
+    * `cache`: folder of programs, which other users must not be able to write. `None`: the user's
+      cache.
+    * `report`: told the stages of a compilation.
 
-    Raises
-    ------
-    ProgramMissingError
-        If there is no Verilator, or no C++ compiler.
-    BuildError
+    Raises `BuildError`. Raises `ProgramMissingError` if there is no Verilator, or no C++ compiler.
     """
     verilator = find_verilator("A fast simulation")
     compiler = find_compiler("A fast simulation", with_zig=True)
@@ -273,9 +264,7 @@ def verilated_source(
 ) -> VerilatedSource:
     """Elaborate a design.
 
-    Raises
-    ------
-    ClockDomainError, wiring.ConnectionError
+    Raises `ClockDomainError` or `wiring.ConnectionError`.
     """
     netlist = convert_fragment(top.prepare(name=_MODULE), (), name=_MODULE)
     main = _templates.get_template("model.cc.j2").render(
@@ -294,15 +283,10 @@ def translate(
 ) -> tuple[list[Path], Path]:
     """Write the C++ of a design into a folder.
 
-    Returns
-    -------
-    list of Path, Path
-        The files that are to be compiled, those of Verilator's runtime included, and the folder
-        of its headers.
+    Returns the files that are to be compiled, those of Verilator's runtime included, and the folder
+    of its headers.
 
-    Raises
-    ------
-    ToolError
+    Raises `ToolError`.
     """
     (folder / "design.v").write_text(source.verilog, encoding="utf-8")
     (folder / "main.cpp").write_text(source.main, encoding="utf-8")

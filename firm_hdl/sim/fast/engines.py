@@ -103,10 +103,8 @@ def check_engine(engine: str) -> None:
 def expected_engine(engine: EngineName) -> tuple[EngineName, str]:
     """Return the engine that :func:`start` takes, and why if ``"auto"`` is not the compiled one.
 
-    Raises
-    ------
-    ProgramMissingError
-        If the engine is ``"verilator"`` and there is no Verilator, or no compiler.
+    Raises `ProgramMissingError` if the engine is ``"verilator"`` and there is no Verilator, or no
+    compiler.
     """
     if engine == "amaranth":
         return engine, ""

@@ -37,10 +37,7 @@ class PlainPort:
     def bits(self, value: object) -> int:
         """Return the bits of a value; an integer must fit into the port.
 
-        Raises
-        ------
-        ValueError
-            If an integer has too many bits.
+        Raises `ValueError` if an integer has too many bits.
         """
         return _bits(self.name, self.shape, len(self.value), value)
 
@@ -111,9 +108,7 @@ class Ports:
     ) -> StreamPort:
         """Return a stream by its name; `is_input` and `is_packets` say what it has to be.
 
-        Raises
-        ------
-        ValueError
+        Raises `ValueError`.
         """
         known = {s.name: s for s in self.streams if is_input in (None, s.is_input)}
         if name not in known:
@@ -126,9 +121,7 @@ class Ports:
     def plain_port(self, name: str, *, is_input: bool) -> tuple[int, PlainPort]:
         """Return a plain port by its name, and its place among those of its direction.
 
-        Raises
-        ------
-        ValueError
+        Raises `ValueError`.
         """
         ports = self.inputs if is_input else self.outputs
         for number, port in enumerate(ports):
@@ -144,12 +137,8 @@ def ports_of(component: Any) -> Ports:
 
     What a `DomainRenamer` made of a component has the same ports.
 
-    Raises
-    ------
-    TypeError
-        If it is not a component of `amaranth.lib.wiring`.
-    ValueError
-        If it has an input stream with ``always_valid``, which cannot be fed from a queue.
+    Raises `TypeError` if it is not a component of `amaranth.lib.wiring`. Raises `ValueError` if it
+    has an input stream with ``always_valid``, which cannot be fed from a queue.
     """
     is_component = isinstance(getattr(component, "signature", None), wiring.Signature)
     if not is_component or not isinstance(component, Elaboratable):

@@ -126,11 +126,7 @@ class Arrivals:
     The transfers of a packet stream are joined to packets when its packets are asked for. From then
     on, they are no longer there as transfers.
 
-    Parameters
-    ----------
-    streams : sequence of StreamPort
-    ignored : collection of str
-        Streams whose transfers are not kept.
+    * `ignored`: streams whose transfers are not kept.
     """
 
     def __init__(self, streams: Sequence[StreamPort], ignored: Collection[str]):

@@ -26,39 +26,26 @@ class Top(Elaboratable):
     The outside drives the clock of each domain that the design does not drive itself. Resets are
     never high.
 
-    Parameters
-    ----------
-    component : elaboratable
-        A component, or what a `DomainRenamer` made of one.
-    ports : Ports
-        Its ports.
-
-    Attributes
-    ----------
-    valids, readies, payloads : list of Signal
-        For each stream. The outside drives `valid` and `payload` of input streams, and `ready` of
-        output streams.
-    plain : list of Signal
-        For each plain port.
-    clocks : dict of str to ClockDomain
-        By port: the domains whose clocks the outside drives. Known once the design is prepared.
-    clock_of : list of int
-        For each stream: the place of its domain in `clocks`.
-    open : list of str
-        Streams inside the design that offer transfers, and that nothing takes.
+    * `component`: a component, or what a `DomainRenamer` made of one.
+    * `ports`: its ports.
     """
 
     def __init__(self, component: Elaboratable, ports: Ports):
         self.component, self.ports = component, ports
         # If no engine can be started, that is the error, and not that nothing was elaborated.
         self._MustUse__used = component._MustUse__used = True
+        # By port: the domains whose clocks the outside drives. Known once the design is prepared.
         self.clocks: dict[str, ClockDomain] = {}
-        self.clock_of: list[int] = []
+        self.clock_of: list[int] = []  # For each stream: the place of its domain in `clocks`.
+        # Streams inside the design that offer transfers, and that nothing takes.
         self.open: list[str] = []
         streams = list(enumerate(self.ports.streams))
+        # For each stream. The outside drives `valid` and `payload` of input streams, and `ready` of
+        # output streams.
         self.valids = [Signal(name=f"valid{number}") for number, _ in streams]
         self.readies = [Signal(name=f"ready{number}") for number, _ in streams]
         self.payloads = [Signal(max(1, s.width), name=f"payload{number}") for number, s in streams]
+        # For each plain port.
         self.plain = [
             Signal(max(1, len(port.value)), name=f"plain{number}")
             for number, port in enumerate(self.ports.plain)
@@ -67,17 +54,10 @@ class Top(Elaboratable):
     def prepare(self, *, name: str, divides: bool = False) -> Design:
         """Elaborate the design, with the clocks as ports ``clock0`` and so on.
 
-        Parameters
-        ----------
-        divides : bool
-            Divide combinational logic, as a simulation in Python wants it.
+        * `divides`: divide combinational logic, as a simulation in Python wants it.
 
-        Raises
-        ------
-        ClockDomainError
-            If a stream is in a domain whose clock the design drives itself, or in several.
-        wiring.ConnectionError
-            If a stream is connected twice.
+        Raises `ClockDomainError` if a stream is in a domain whose clock the design drives itself,
+        or in several. Raises `wiring.ConnectionError` if a stream is connected twice.
         """
         fragment = Fragment.get(self, None)
         check_connections(fragment)

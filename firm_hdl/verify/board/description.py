@@ -34,17 +34,12 @@ def loop_text(
 ) -> str:
     """Return the text of a description that sends each type back as it came.
 
-    Parameters
-    ----------
-    names : iterable of str
-        Full names of messages, such as ``std_msgs/msg/String`` or ``std_srvs/srv/Trigger_Request``.
-    paths : sequence of str
-        Folders with ROS packages, as the user named them.
-    folder : str
-        Folder of the file that the text is for; paths are relative to it.
-    board : str or None
-        The board, as :func:`firm_hdl.node.boards.board_of` takes it; its form decides the link.
-        `None`: UDP.
+    * `names`: full names of messages, such as ``std_msgs/msg/String`` or
+      ``std_srvs/srv/Trigger_Request``.
+    * `paths`: folders with ROS packages, as the user named them.
+    * `folder`: folder of the file that the text is for; paths are relative to it.
+    * `board`: the board, as :func:`firm_hdl.node.boards.board_of` takes it; its form decides the
+      link. `None`: UDP.
     """
     lines = [
         "# A node that sends back what it receives, for firm-hdl verify --board.",
@@ -70,20 +65,12 @@ def loop_text(
 def described_board(request: Request, names: Iterable[str]) -> Description:
     """Return the description of a board: that of ``--node``, or one that loops named types.
 
-    Parameters
-    ----------
-    request : Request
-        `board`, `node`, `paths`, `depends`, `widths` and `distros`; without ``--node``, one of each
-        of the latter two.
-    names : iterable of str
-        Full names of messages; not used with ``--node``.
+    * `request`: `board`, `node`, `paths`, `depends`, `widths` and `distros`; without ``--node``,
+      one of each of the latter two.
+    * `names`: full names of messages; not used with ``--node``.
 
-    Raises
-    ------
-    DefinitionError
-        If the description cannot be used.
-    UserError
-        If it loops no type, or no node has a bus of that width.
+    Raises `DefinitionError` if the description cannot be used. Raises `UserError` if it loops no
+    type, or no node has a bus of that width.
     """
     if request.node is not None:
         found = read_description(request.node, paths=(*request.paths, *request.depends))
@@ -98,10 +85,7 @@ def described_board(request: Request, names: Iterable[str]) -> Description:
 def write_description(request: Request, names: Iterable[str], path: str) -> None:
     """Write the description of a board that loops named types; parameters as above.
 
-    Raises
-    ------
-    DefinitionError, UserError
-        As above, or if the file exists or cannot be written.
+    Raises `DefinitionError` or `UserError`: as above, or if the file exists or cannot be written.
     """
     text = _text(request, names, os.path.dirname(path) or ".")
     # What cannot be built should not be written.
@@ -117,10 +101,7 @@ def write_description(request: Request, names: Iterable[str], path: str) -> None
 def chosen_loops(description: Description, names: Sequence[str]) -> tuple[tuple[Topic, Topic], ...]:
     """Return the loops of a description whose types are named; without names, all of them.
 
-    Raises
-    ------
-    UserError
-        If there is no loop of a type that is named.
+    Raises `UserError` if there is no loop of a type that is named.
     """
     loops = description.loops()
     if not names:

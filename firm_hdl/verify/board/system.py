@@ -86,20 +86,11 @@ def judge_loop(
 ) -> None:
     """Send the cases of a type through a board, and add to the trial.
 
-    Parameters
-    ----------
-    talk : Talk
-        Open.
-    loop : subscription and publication
-    options : Options
-        `seed`, `most_cases`, `broken` and `references` are used.
+    * `talk`: open.
+    * `options`: `seed`, `most_cases`, `broken` and `references` are used.
 
-    Raises
-    ------
-    NotJudgedError
-        If the oracle cannot judge the type, or no case fits into the memories of the node.
-    TalkError
-        If the board is gone.
+    Raises `NotJudgedError` if the oracle cannot judge the type, or no case fits into the memories
+    of the node. Raises `TalkError` if the board is gone.
     """
     store = loop[0].store("in")
     message, wire = store.message, description.wire
@@ -298,19 +289,13 @@ def _lost(changes: Mapping[tuple[str, str], int]) -> Mapping[str, int]:
 class Boards(System):
     """The types of a board; a test is one type.
 
-    Parameters
-    ----------
-    description : Description
-        Of the node on the board.
-    request : Request
-        `types`, `board`, `node`, `engine`, `silent_seconds` and the options of cases are used.
-    board : Board or None
-        A board in place of the one that the request names.
+    * `description`: of the node on the board.
+    * `request`: `types`, `board`, `node`, `engine`, `silent_seconds` and the options of cases are
+      used.
+    * `board`: a board in place of the one that the request names.
 
-    Raises
-    ------
-    UserError
-        If the name of the board is none, or no loop of the node has a type that is named.
+    Raises `UserError` if the name of the board is none, or no loop of the node has a type that is
+    named.
     """
 
     name = "board"

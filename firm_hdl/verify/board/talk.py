@@ -29,19 +29,13 @@ class TalkError(Exception):
 class Talk:
     """A talk with a board, which is closed in the end; a context manager.
 
-    Parameters
-    ----------
-    board : Board
-        Not yet open.
-    description : Description
-        Of the node that the board has to have.
-    silent_seconds : float or None
-        A board that says nothing for so long has failed; `None`: as the board has it.
+    * `board`: not yet open.
+    * `description`: of the node that the board has to have.
+    * `silent_seconds`: a board that says nothing for so long has failed; `None`: as the board has
+      it.
 
-    Raises
-    ------
-    TalkError
-        From all methods, if the board is gone or silent, has started again, or is another one.
+    Raises `TalkError`: from all methods, if the board is gone or silent, has started again, or is
+    another one.
     """
 
     def __init__(
@@ -95,17 +89,9 @@ class Talk:
 
         No more packets are under way than the memories of the node have room for.
 
-        Parameters
-        ----------
-        loop : subscription and publication
-        packets : sequence of bytes
-        comes_back : sequence of bool
-            Whether an answer is expected, for each packet; that of the last one is.
+        * `comes_back`: whether an answer is expected, for each packet; that of the last one is.
 
-        Returns
-        -------
-        list of bytes
-            Fewer packets than expected if nothing came for too long. More than expected can come.
+        Fewer packets than expected come back if nothing came for too long, and more can come.
         """
         came, back = loop
         window = _Window(self._description, loop)

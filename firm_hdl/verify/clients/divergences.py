@@ -355,10 +355,7 @@ def known_writing(
     divergences are about are taken out of the value. There are no divergences of a type that
     rosbags does not have.
 
-    Parameters
-    ----------
-    codec : Codec
-        The codec of `library`. That of rosbags is opened here.
+    * `codec`: the codec of `library`. That of rosbags is opened here.
     """
     try:
         reference_codec = client(_WRITER).open(message, wire)

@@ -86,10 +86,7 @@ def compare(
     one with the smallest value is a failure. An obstacle is that a library lacks the type, or that
     the reference has no answer.
 
-    Returns
-    -------
-    bool
-        Whether both libraries have the type.
+    Returns whether both libraries have the type.
     """
     try:
         for each in (library, reference):
@@ -213,10 +210,8 @@ class Libraries(TypesSystem):
     A type has no test of a library that does not speak its wire, unless the user named wires or
     distributions.
 
-    Raises
-    ------
-    ClientMissingError
-        When the system is entered, if a library under test is not installed.
+    Raises `ClientMissingError`: when the system is entered, if a library under test is not
+    installed.
     """
 
     name = "sut"

@@ -98,9 +98,7 @@ def _accepted(answers: Sequence[R | Refusal]) -> R:
 def each_answered(library: str, questions: Sequence[object], answers: Sequence[R]) -> Sequence[R]:
     """Return the answers, if there is one to each question.
 
-    Raises
-    ------
-    ClientDiedError
+    Raises `ClientDiedError`.
     """
     if len(answers) != len(questions):
         raise ClientDiedError(
@@ -137,9 +135,7 @@ class Client(ABC):
     def open(self, message: Message, wire: Wire) -> Codec:
         """Get ready for a message type.
 
-        Raises
-        ------
-        UnsupportedError
+        Raises `UnsupportedError`.
         """
 
     def close(self) -> None:  # noqa: B027 - most have nothing to do.

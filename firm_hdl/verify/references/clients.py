@@ -115,10 +115,7 @@ def may_stand_in(message: Message, wanted: Sequence[str] | None = None) -> bool:
 def find_references(wanted: Sequence[str] | None, wires: Sequence[str]) -> list[str]:
     """Return a line for each library that cannot be used; for a process that starts others.
 
-    Raises
-    ------
-    ClientMissingError
-        If a library that is wanted by name cannot be used.
+    Raises `ClientMissingError` if a library that is wanted by name cannot be used.
     """
     names = [name for name in WRITERS if set(wires) & WRITERS[name]]
     _, missing = find_clients(names if wanted is None else wanted)

@@ -219,15 +219,10 @@ def _text(answer: bytes) -> str:
 def _compiled(release: Release | None) -> Path:
     """Return the program; compile it if it is not in the cache.
 
-    Parameters
-    ----------
-    release : Release or None
-        The ROS release whose Fast CDR is used; `None`: that of the system.
+    * `release`: the ROS release whose Fast CDR is used; `None`: that of the system.
 
-    Raises
-    ------
-    ToolError
-        If the program cannot be compiled; the text says what is missing and how to install it.
+    Raises `ToolError` if the program cannot be compiled; the text says what is missing and how to
+    install it.
     """
     try:
         compiler = find_compiler("Fast CDR")

@@ -169,9 +169,7 @@ def full_text(message: Message) -> str:
 def refuse_wide(message: Message, library: str) -> None:
     """Refuse a type with wide text, for a library that does not support it.
 
-    Raises
-    ------
-    UnsupportedError
+    Raises `UnsupportedError`.
     """
     for kind in closure([message]):
         for item in kind.fields:

@@ -24,10 +24,7 @@ FLOATS = {"float32": ("<I", "<f"), "float64": ("<Q", "<d")}
 class Objects:
     """Writer and reader of the types of one table.
 
-    Parameters
-    ----------
-    classes : dict
-        Message classes by name.
+    * `classes`: message classes by name.
     """
 
     def __init__(self, genpy: Any, classes: Any, table: Any) -> None:

@@ -169,12 +169,8 @@ FORMATS: Mapping[str, Callable[[Summary], str]] = {
 def _environment(*, is_html: bool, **filters: Any) -> Environment:
     """Return a Jinja environment with the functions that templates may use.
 
-    Parameters
-    ----------
-    is_html : bool
-        Whether text is escaped, so that nothing in it is a tag.
-    **filters
-        Filters by the names that templates have for them.
+    * `is_html`: whether text is escaped, so that nothing in it is a tag.
+    * `**filters`: filters by the names that templates have for them.
     """
     found = pages(_FOLDER)
     found.autoescape = is_html
@@ -205,10 +201,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
 def run_report(given: argparse.Namespace) -> None:
     """Run ``firm-hdl report``.
 
-    Raises
-    ------
-    BuildError
-        If a file is not one of results.
+    Raises `BuildError` if a file is not one of results.
     """
     form = given.format
     if given.out is None:
@@ -226,15 +219,10 @@ def write_report(
 ) -> None:
     """Write a report of files of results.
 
-    Parameters
-    ----------
-    form : str or None
-        A key of `FORMATS`; `None`: the suffix of `out`.
+    * `form`: a key of `FORMATS`; `None`: the suffix of `out`.
 
-    Raises
-    ------
-    BuildError
-        If a file is not one of results, or if the suffix of `out` is not a key of `FORMATS`.
+    Raises `BuildError` if a file is not one of results, or if the suffix of `out` is not a key of
+    `FORMATS`.
     """
     path = Path(out)
     form = form or path.suffix.lstrip(".").lower()

@@ -121,10 +121,7 @@ def correlate(
 ) -> Correlation | None:
     """Return the correlation of two figures.
 
-    Returns
-    -------
-    Correlation or None
-        `None` if one of the figures does not vary.
+    It is `None` if one of the figures does not vary.
     """
     xs, ys = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(xs) < 2 or np.ptp(xs) == 0 or np.ptp(ys) == 0:
@@ -649,10 +646,7 @@ def reason_groups(
 ) -> list[Reason]:
     """Group tests that were not judged for the same reason, the largest group first.
 
-    Parameters
-    ----------
-    text_of : callable or None
-        Returns the text to group a test by; `None`: why a test was not judged or not run.
+    * `text_of`: returns the text to group a test by; `None`: why a test was not judged or not run.
     """
     groups: dict[str, list[Outcome]] = defaultdict(list)
     texts: dict[str, str] = {}

@@ -382,10 +382,7 @@ def note_of(outcome: Outcome) -> str:
 def shown_tests(summary: Summary, most: int) -> tuple[list[Outcome], str]:
     """Choose which tests to list: all, or those that did not pass and then the slowest.
 
-    Returns
-    -------
-    tests, rest
-        The rest is a text about the tests that are left out; empty if there are none.
+    Returns also a text about the tests that are left out; empty if there are none.
     """
     found = list(summary.outcomes)
     left = len(found) - most

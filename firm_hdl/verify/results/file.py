@@ -73,11 +73,7 @@ class Results:
 def read_results(path: str | os.PathLike[str]) -> Results:
     """Read a file of results, without a last line that has no line end.
 
-    Raises
-    ------
-    ResultsError
-        If the file does not contain results.
-    OSError
+    Raises `OSError`. Raises `ResultsError` if the file does not contain results.
     """
     return _read(Path(path))[0]
 
@@ -295,10 +291,7 @@ _MOST_INPUT_BYTES = 1 << 22
 def environment(**more: str) -> dict[str, str]:
     """Return names and versions, none of which identifies a user or a machine.
 
-    Parameters
-    ----------
-    **more
-        Further entries.
+    * `**more`: further entries.
     """
     found = {
         "started": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),

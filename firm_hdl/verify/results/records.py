@@ -190,10 +190,7 @@ def clipped_verdict(verdict: Verdict) -> Verdict:
 def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
     """Return the verdict that counts. It depends on the test that simulated the circuit, too.
 
-    Parameters
-    ----------
-    records : mapping of str to Record
-        Records of all tests, by key.
+    * `records`: records of all tests, by key.
     """
     if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
         return record.verdict
@@ -239,11 +236,8 @@ def to_json(value: Any) -> Any:
 def from_json(kind: type[T], given: Any) -> T:
     """Return a record, or a part of one, from an object that `to_json` wrote.
 
-    Raises
-    ------
-    ValueError, TypeError
-        If the object has unknown names, or lacks one, or has a value of another type, or a number
-        that nothing that is counted or measured can have.
+    Raises `ValueError` or `TypeError` if the object has unknown names, or lacks one, or has a value
+    of another type, or a number that nothing that is counted or measured can have.
     """
     hints = _HINTS[kind]
     if kind is OracleVerdict:

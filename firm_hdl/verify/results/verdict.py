@@ -29,10 +29,7 @@ SILENT = "failed without saying why"
 class Passed:
     """Everything that was judged is right.
 
-    Raises
-    ------
-    ValueError
-        If nothing was judged.
+    Raises `ValueError` if nothing was judged.
     """
 
     name: ClassVar[str] = "passed"
@@ -48,10 +45,7 @@ class Passed:
 class Failed:
     """Something is wrong, or the judge failed.
 
-    Raises
-    ------
-    ValueError
-        If there is no failure.
+    Raises `ValueError` if there is no failure.
     """
 
     name: ClassVar[str] = "failed"
@@ -76,10 +70,7 @@ class Failed:
 class NotJudged:
     """No oracle could judge the test.
 
-    Raises
-    ------
-    ValueError
-        If the reason is blank.
+    Raises `ValueError` if the reason is blank.
     """
 
     name: ClassVar[str] = "not judged"
@@ -100,10 +91,7 @@ class NotJudged:
 class KnownDifference:
     """The readings or packets differ only as documented.
 
-    Raises
-    ------
-    ValueError
-        If there is no key, a blank one, or nothing was compared.
+    Raises `ValueError` if there is no key, a blank one, or nothing was compared.
     """
 
     name: ClassVar[str] = "known difference"

@@ -26,16 +26,10 @@ _SCRIPT = Path(__file__).with_name("worker_script.py")
 class Worker:
     """A process with the readers of one family, for a folder of definitions.
 
-    Parameters
-    ----------
-    family : str
-        ``FAMILY`` in the name of the module ``worker_FAMILY``, which has the readers.
-    folder : str
-        The folder of the definitions.
-    modules : Path
-        The folder of that module.
-    python : str
-        The Python that runs the process.
+    * `family`: ``FAMILY`` in the name of the module ``worker_FAMILY``, which has the readers.
+    * `folder`: the folder of the definitions.
+    * `modules`: the folder of that module.
+    * `python`: the Python that runs the process.
     """
 
     def __init__(

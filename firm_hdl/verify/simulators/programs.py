@@ -50,19 +50,9 @@ __all__ = [
 class Runtime:
     """Verilator's runtime and sources of our own, as objects that programs are linked with.
 
-    Parameters
-    ----------
-    options : sequence of str
-        Options of the compiler.
-    own : sequence of Path
-        Our sources. Their folders are searched for headers.
-    parts : sequence of str
-        Sources of Verilator, from :func:`runtime_parts`.
-
-    Attributes
-    ----------
-    includes : list of str
-        Compiler options with the folders of the headers.
+    * `options`: options of the compiler.
+    * `own`: our sources. Their folders are searched for headers.
+    * `parts`: sources of Verilator, from :func:`runtime_parts`.
     """
 
     def __init__(
@@ -81,6 +71,7 @@ class Runtime:
             raise ToolError("Verilator did not say where its runtime is")
         library = Path(root, "include")
         folders = dict.fromkeys([library, *(source.parent for source in own)])
+        # Compiler options with the folders of the headers.
         self.includes = [f"-I{each}" for each in folders]
         self.objects = []
         for source in [*own, *(library / f"{part}.cpp" for part in parts)]:
@@ -116,34 +107,23 @@ _STIMULI, _RESULTS = "stimuli.txt", "results.txt"
 
 
 class TextSimulator(Protocol):
-    """A simulator of exported text. To make one raises `ProgramMissingError` if it is missing.
-
-    Attributes
-    ----------
-    version : str
-        What the simulator says of its version.
-    """
+    """A simulator of exported text. To make one raises `ProgramMissingError` if it is missing."""
 
     title: str  # The name of the simulator in messages.
 
     @property
-    def version(self) -> str: ...
+    def version(self) -> str:
+        """What the simulator says of its version."""
 
     def replay(self, trace: Trace, tops: Sequence[Top], folder: Path) -> list[str]:
         """Run a trace; return rows of outputs as they are in `Trace.expected`.
 
         A bit that is undefined in the simulator is a letter, such as ``X``.
 
-        Parameters
-        ----------
-        tops : sequence of Top
-            The tops of the devices to export, in order.
-        folder : Path
-            An empty folder for the files of the simulator.
+        * `tops`: the tops of the devices to export, in order.
+        * `folder`: an empty folder for the files of the simulator.
 
-        Raises
-        ------
-        ToolError
+        Raises `ToolError`.
         """
 
 
@@ -263,9 +243,7 @@ SIMULATORS: dict[str, Callable[[], TextSimulator]] = {
 def simulator(name: str) -> TextSimulator | None:
     """Return a simulator by its name; `None` for ``python``, which is always used.
 
-    Raises
-    ------
-    ProgramMissingError
+    Raises `ProgramMissingError`.
     """
     return None if name == "python" else SIMULATORS[name]()
 

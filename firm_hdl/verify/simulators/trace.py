@@ -64,27 +64,13 @@ class Pin:
 class Trace:
     """Recorded runs of converters.
 
-    Parameters
-    ----------
-    cores : sequence of Deserializer or Serializer
-        The converters that are simulated.
-    message : str
-        Name of their type.
-
-    Attributes
-    ----------
-    inputs, outputs : list of Pin
-        All ports except `aclk` and `aresetn`.
-    stimuli, expected : list of str
-        Rows of inputs of all cycles, and rows of outputs of all cycles but those of resets.
-    probes : list of Value
-        The values to observe. Each of them has several pins.
-    runs : list of (str, int)
-        The name of each run, and the index of its first row of outputs.
+    * `cores`: the converters that are simulated.
+    * `message`: name of their type.
     """
 
     def __init__(self, cores: Sequence[Deserializer | Serializer], message: str):
         self.devices = [Device.of(core, message) for core in cores]
+        # All ports except `aclk` and `aresetn`.
         self.inputs: list[Pin] = []
         self.outputs: list[Pin] = []
         values: dict[str, list[Value]] = {"in": [], "out": []}
@@ -99,9 +85,12 @@ class Trace:
                 values[port.direction].append(sources[port.name])
         self._inputs = _Changes(self.inputs, values["in"])
         self._outputs = _Changes(self.outputs, values["out"])
+        # The values to observe. Each of them has several pins.
         self.probes = [*self._inputs.probes, *self._outputs.probes]
+        # Rows of inputs of all cycles, and rows of outputs of all cycles but those of resets.
         self.stimuli: list[str] = []
         self.expected: list[str] = []
+        # The name of each run, and the index of its first row of outputs.
         self.runs: list[tuple[str, int]] = []
         self._is_reset = False
 

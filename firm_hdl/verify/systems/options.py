@@ -201,13 +201,9 @@ def option_of(name: str) -> str:
 def command_again(*names: str, **options: object) -> str:
     """Return a call of ``firm-hdl verify``.
 
-    Parameters
-    ----------
-    *names : str
-        The names of what is tested, which come last.
-    **options
-        Options by their names, with underscores for dashes, in order. `None` and `False` leave an
-        option out. `True` is an option without a value. A tuple repeats the option.
+    * `*names`: the names of what is tested, which come last.
+    * `**options`: options by their names, with underscores for dashes, in order. `None` and `False`
+      leave an option out. `True` is an option without a value. A tuple repeats the option.
     """
     words = ["firm-hdl", "verify"]
     for option, value in options.items():

@@ -254,16 +254,10 @@ def kept(
 ) -> list[Record]:
     """Run the tests that have no record, and write their records; return all records, in order.
 
-    Parameters
-    ----------
-    writer : ResultsWriter or None
-        The file of results, with the records of earlier sessions; `None`: there is none.
-    run : callable
-        Takes the tests to run.
-    lines_of : callable
-        Returns the lines to print about a new record.
-    label, unit : str
-        What the line of progress says, and the name of a test there.
+    * `writer`: the file of results, with the records of earlier sessions; `None`: there is none.
+    * `run`: takes the tests to run.
+    * `lines_of`: returns the lines to print about a new record.
+    * `label`, `unit`: what the line of progress says, and the name of a test there.
     """
     records: dict[Test, Record] = {}
     if writer is not None:
@@ -302,17 +296,10 @@ def run_tests(
     takes some milliseconds. If it dies, the tests of the share run again one by one, to find the
     one at fault.
 
-    Parameters
-    ----------
-    command : callable
-        Returns the command that repeats a test.
-    most : int
-        The largest number of tests of a share.
+    * `command`: returns the command that repeats a test.
+    * `most`: the largest number of tests of a share.
 
-    Raises
-    ------
-    ExecutorError
-        See :func:`firm_hdl.jobs.executors.run_each`.
+    Raises `ExecutorError`: see :func:`firm_hdl.jobs.executors.run_each`.
     """
     size = min(most, max(1, len(tests) // SHARES))
     shares = [tuple(tests[at : at + size]) for at in range(0, len(tests), size)]

@@ -60,19 +60,12 @@ def collect_tasks(
 ) -> list[TypeUnderTest]:
     """List the types to test, the largest first.
 
-    Parameters
-    ----------
-    distros : iterable of str
-        Empty: all distributions.
-    names : sequence of str
-        Types as ``package/Type`` or ``package/msg/Type``; empty: all types.
-    problems : dict or None
-        Receives the error about names that no distribution has, by its text, if other names exist.
+    * `distros`: empty: all distributions.
+    * `names`: types as ``package/Type`` or ``package/msg/Type``; empty: all types.
+    * `problems`: receives the error about names that no distribution has, by its text, if other
+      names exist.
 
-    Raises
-    ------
-    UnknownTypeError
-        If no distribution has a type of a name.
+    Raises `UnknownTypeError` if no distribution has a type of a name.
     """
     # This import loads rosbags' types and NumPy, which a user's own definitions do not need.
     from firm_hdl.cases.oracle import DISTRO_STORES, distro_oracle
@@ -108,22 +101,16 @@ def collect_own(
 ) -> list[TypeUnderTest]:
     """List the types in folders to test, the largest first.
 
-    Parameters
-    ----------
-    distros : iterable of str
-        The distributions by whose rules and types the definitions are read, one after the other.
-    names : sequence of str
-        Types, services or actions; empty: all that are in `paths`. Types that are named must
-        not be too large to be laid out (:func:`firm_hdl.wire.too_large`).
-    depends : sequence of str
-        Folders with packages that others depend on.
-    problems : dict or None
-        Receives errors in definitions, by their texts. These definitions are left out then.
+    * `distros`: the distributions by whose rules and types the definitions are read, one after the
+      other.
+    * `names`: types, services or actions; empty: all that are in `paths`. Types that are named must
+      not be too large to be laid out (:func:`firm_hdl.wire.too_large`).
+    * `depends`: folders with packages that others depend on.
+    * `problems`: receives errors in definitions, by their texts. These definitions are left out
+      then.
 
-    Raises
-    ------
-    DefinitionError
-        With all errors, if `problems` is `None` or none of the named types can be used.
+    Raises `DefinitionError`: with all errors, if `problems` is `None` or none of the named types
+    can be used.
     """
     found: dict[tuple[str, str], int] = {}
     wrong: dict[str, Diagnostic] = {} if problems is None else problems

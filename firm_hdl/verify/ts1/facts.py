@@ -77,14 +77,10 @@ def facts_of(
 ) -> Facts:
     """Return facts about a model.
 
-    Parameters
-    ----------
-    wanted : iterable of str
-        Names of the facts. The text of an error that occurs stands for its fact.
-    alike : mapping of str to str
-        Primitives that the oracle cannot tell from others: their names, and those of the others.
-    show : callable
-        Returns the definition as ``firm-hdl show`` prints it.
+    * `wanted`: names of the facts. The text of an error that occurs stands for its fact.
+    * `alike`: primitives that the oracle cannot tell from others: their names, and those of the
+      others.
+    * `show`: returns the definition as ``firm-hdl show`` prints it.
     """
     services = interface.services if isinstance(interface, Action) else ()
     makers: dict[str, Callable[[], Any]] = {

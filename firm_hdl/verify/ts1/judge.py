@@ -23,12 +23,8 @@ def judge_case(
 ) -> Record:
     """Compare our reading of one definition with those of oracles.
 
-    Returns
-    -------
-    Record
-        ``generation`` is the time of our reading. ``testing`` is the time of the oracles and of
-        comparisons.
-        The processor time includes the oracles' processes.
+    In the record, ``generation`` is the time of our reading, and ``testing`` that of oracles and of
+    comparisons. The processor time includes the oracles' processes.
     """
     watch = Stopwatch()
     ours = read(universe, case)
@@ -100,10 +96,7 @@ def judge(
 ) -> OracleVerdict | None:
     """Compare our reading of a definition with an oracle's; `None` if the oracle does not read it.
 
-    Parameters
-    ----------
-    ours : Message, Service, Action, Exception or None
-        Our reading; `None`: `read` is called for it.
+    * `ours`: our reading; `None`: `read` is called for it.
     """
     if case.language not in oracle.languages.get(case.dialect, ()):
         return None
@@ -130,10 +123,7 @@ def compare(
 ) -> Verdict:
     """Compare our reading of a definition with an oracle's answer.
 
-    Parameters
-    ----------
-    ours : Message, Service, Action or Exception
-        The result of `read`.
+    * `ours`: the result of `read`.
     """
     if isinstance(answer, NotJudged):
         return answer

@@ -47,12 +47,8 @@ def each_distro(request: Request) -> list[Request]:
     If the request names none, the default distribution is used with paths. Without paths, all
     distributions that have the types are used.
 
-    Raises
-    ------
-    UnknownTypeError
-        If no distribution has the types.
-    DefinitionError
-        If the active workspace has their packages without the types.
+    Raises `UnknownTypeError` if no distribution has the types. Raises `DefinitionError` if the
+    active workspace has their packages without the types.
     """
     names = request.distros or (
         [DEFAULT_DISTRO] if request.paths else _distros_with_any_of(request.types)
@@ -101,10 +97,6 @@ class Ts1(System):
     ----------
     cases : dict of Test to DefinitionCase
         The definitions to judge.
-    versions : dict of str to str
-        Releases of the oracles that are asked, by name.
-    missing : dict of str to str
-        Why the other oracles cannot be asked, by name.
 
     Raises
     ------
@@ -117,8 +109,8 @@ class Ts1(System):
     def __init__(self, request: Request) -> None:
         self.request = request
         (self.distro,) = request.distros
-        self.versions: dict[str, str] = {}
-        self.missing: dict[str, str] = {}
+        self.versions: dict[str, str] = {}  # Releases of the oracles that are asked, by name.
+        self.missing: dict[str, str] = {}  # Why the other oracles cannot be asked, by name.
 
     def __enter__(self) -> Ts1:
         request = self.request

@@ -67,12 +67,9 @@ class DefinitionCase:
 class Universe:
     """The definitions of a distribution and of some folders.
 
-    Parameters
-    ----------
-    paths, depends : sequence of str
-        As for `open_library`. The folders that the environment names are searched, too.
-    folder : str
-        The folder for the files of `write_definitions`, ``PACKAGE/msg|srv|action/FILE``.
+    * `paths`, `depends`: as for `open_library`. The folders that the environment names are
+      searched, too.
+    * `folder`: the folder for the files of `write_definitions`, ``PACKAGE/msg|srv|action/FILE``.
     """
 
     def __init__(
@@ -104,10 +101,7 @@ class Universe:
         If no type is named, these are all definitions in `paths`. Without `paths`, these are all
         definitions of the universe.
 
-        Raises
-        ------
-        DefinitionError
-            If a type does not exist.
+        Raises `DefinitionError` if a type does not exist.
         """
         wanted = list(types)
         if wanted:
@@ -170,10 +164,7 @@ class Universe:
     def interface(self, case: DefinitionCase) -> Interface:
         """Read a definition as users do.
 
-        Raises
-        ------
-        DefinitionError
-            If the definition, or one that it depends on, is refused.
+        Raises `DefinitionError` if the definition, or one that it depends on, is refused.
         """
         return self._library_with(case).interface(case.spelled_name)
 

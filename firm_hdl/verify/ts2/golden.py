@@ -75,10 +75,7 @@ class Checked:
 def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:
     """Read all golden plans of a folder, sorted by path.
 
-    Raises
-    ------
-    ValueError
-        If a file is not a plan, or its folder is not named like a distribution.
+    Raises `ValueError` if a file is not a plan, or its folder is not named like a distribution.
     """
     found = []
     for path in sorted(Path(folder).glob("*/*.yaml")):
@@ -107,10 +104,8 @@ def check_golden(
 ) -> list[Checked]:
     """Plan each type again, compare the plans, and check the invariants of each new plan.
 
-    Parameters
-    ----------
-    paths, bags, depends
-        As for `open_library`, which is called for the distribution of each golden plan.
+    * `paths`, `bags`, `depends`: as for `open_library`, which is called for the distribution of
+      each golden plan.
     """
     libraries: dict[str, Library] = {}
     results = []
@@ -159,10 +154,7 @@ def write_golden(path: Path, text: str) -> None:
 def summarise(results: Iterable[Checked]) -> dict[str, list[str]]:
     """Group changes by their kind, so that one cause in many types shows as one kind.
 
-    Returns
-    -------
-    dict of str to list of str
-        Names of the types that each kind of change touches, the most frequent kind first.
+    Returns the names of the types that each kind of change touches, the most frequent kind first.
     """
     touched: dict[str, dict[str, None]] = defaultdict(dict)
     for result in results:

@@ -62,16 +62,9 @@ def check_plan(message: Message, wire: Wire | None, trial: Trial) -> None:
 class Ts2(TypesSystem):
     """Plans of types; a test is one plan, or one golden plan.
 
-    Parameters
-    ----------
-    tasks : sequence of TypeUnderTest
-    request : Request
-        `paths`, `wire`, `widths`, `golden`, `jobs` and `executor` are used.
+    * `request`: `paths`, `wire`, `widths`, `golden`, `jobs` and `executor` are used.
 
-    Raises
-    ------
-    BuildError
-        From `tests`, if the folder of golden plans cannot be used.
+    Raises `BuildError`: from `tests`, if the folder of golden plans cannot be used.
     """
 
     name = "ts2"

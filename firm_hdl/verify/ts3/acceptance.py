@@ -77,10 +77,7 @@ def measured(
 ) -> Record:
     """Find the type of a test and its oracle, and call `run` with them; return the record.
 
-    Parameters
-    ----------
-    run : callable
-        Adds to the trial. An exception of `run` goes into the record as well.
+    * `run`: adds to the trial. An exception of `run` goes into the record as well.
     """
 
     def found(trial: Trial) -> None:
@@ -167,17 +164,10 @@ def confirm_cases(
 class Acceptance:
     """The runs of one type.
 
-    Parameters
-    ----------
-    trial : Trial
-        Receives failures and figures.
-    max_message_bytes : int or None
-        The limit of the converters; `None`: `message_limit` of the type.
+    * `trial`: receives failures and figures.
+    * `max_message_bytes`: the limit of the converters; `None`: `message_limit` of the type.
 
-    Raises
-    ------
-    NotJudgedError
-        If the type is too large to simulate.
+    Raises `NotJudgedError` if the type is too large to simulate.
     """
 
     circuit: Circuit  # Only if the circuit is to be simulated.

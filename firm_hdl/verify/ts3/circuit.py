@@ -39,17 +39,11 @@ FULL_CYCLES = 60
 class Circuit:
     """Both converters of a type in a loop, simulated in Python and replayed in another simulator.
 
-    Parameters
-    ----------
-    plan : Plan
-        The type's plan. The converters are made for its wire, bus and limit.
-    trial : Trial
-        Receives failures, numbers of packets and cycles, and times.
+    * `plan`: the type's plan. The converters are made for its wire, bus and limit.
+    * `trial`: receives failures, numbers of packets and cycles, and times.
 
-    Raises
-    ------
-    NotJudgedError
-        If a simulator of exported text is asked for, and the converters are too large to export.
+    Raises `NotJudgedError` if a simulator of exported text is asked for, and the converters are too
+    large to export.
     """
 
     def __init__(self, message: Message, plan: Plan, options: Options, trial: Trial):
@@ -160,10 +154,7 @@ def replay_failures(
 ) -> list[str]:
     """Replay all runs of a trace, and return what is wrong.
 
-    Parameters
-    ----------
-    make : callable
-        Returns new instances of the converters of the trace, to be exported.
+    * `make`: returns new instances of the converters of the trace, to be exported.
     """
     try:
         with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:

@@ -88,12 +88,8 @@ def transfer_differences(
 ) -> Iterator[str]:
     """Yield the first transfer of each leaf that differs.
 
-    Parameters
-    ----------
-    got : mapping of int to sequence
-        Payloads by index of the leaf, over all messages.
-    wanted : sequence of mapping
-        Payloads by path of the leaf, a mapping for each message.
+    * `got`: payloads by index of the leaf, over all messages.
+    * `wanted`: payloads by path of the leaf, a mapping for each message.
     """
     joined: dict[tuple[str, ...], list[Payload]] = {}
     for each in wanted:

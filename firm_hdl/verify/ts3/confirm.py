@@ -46,10 +46,7 @@ def confirm(
 ) -> Confirmation:
     """Have other libraries write cases, and compare their packets with those of rosbags.
 
-    Parameters
-    ----------
-    wanted : sequence of str or None
-        Names of libraries; `None`: all that are installed.
+    * `wanted`: names of libraries; `None`: all that are installed.
     """
     usable = usable_references(wanted)
     unable = {name: f"{name} has no wire '{wire}'" for name in usable if wire not in WRITERS[name]}

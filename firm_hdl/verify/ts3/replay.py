@@ -97,10 +97,7 @@ class Selection:
 def topics_of(bag: str) -> list[Place]:
     """List the topics of a recording. One with several types or digests counts several times.
 
-    Raises
-    ------
-    DefinitionError
-        If the recording cannot be read.
+    Raises `DefinitionError` if the recording cannot be read.
     """
     return [(bag, topic) for topic in Recording(bag).topics]
 
@@ -110,21 +107,13 @@ def select(
 ) -> Selection:
     """Select messages that are spread evenly over each topic, and if possible over the topics.
 
-    Parameters
-    ----------
-    topics : sequence of (str, Topic)
-        Topics, all of the same type.
-    most : int
-        The maximum number of messages.
-    longest : int
-        The maximum size of a message in bytes.
-    most_bytes : int or None
-        The maximum size of all messages together. The shortest message is selected in any case.
+    * `topics`: topics, all of the same type.
+    * `most`: the maximum number of messages.
+    * `longest`: the maximum size of a message in bytes.
+    * `most_bytes`: the maximum size of all messages together. The shortest message is selected in
+      any case.
 
-    Raises
-    ------
-    DefinitionError
-        If a recording cannot be read to its end.
+    Raises `DefinitionError` if a recording cannot be read to its end.
     """
     sizes: dict[tuple[str, str], Sequence[int]] = {}
     # Where the messages of a topic are in the file, in the order of their times.
@@ -250,27 +239,17 @@ def collect_recorded(
 ) -> list[TypeUnderTest]:
     """List the types to replay: those that are named, or all types that have topics.
 
-    Parameters
-    ----------
-    distro : str or None
-        The distribution by whose rules definitions are read; `None`: the one of the recordings.
-    names : sequence of str
-        Types by name; empty: all types.
-    wire : Wire or None
-        The wire format that is asked for.
-    problems : dict
-        Receives errors in definitions, by their texts, if no type is named. A type without a
-        definition that can be read is no error, and is only named in the output.
-    depends : sequence of str
-        Folders with the types that the recordings lack.
+    * `distro`: the distribution by whose rules definitions are read; `None`: the one of the
+      recordings.
+    * `names`: types by name; empty: all types.
+    * `wire`: the wire format that is asked for.
+    * `problems`: receives errors in definitions, by their texts, if no type is named. A type
+      without a definition that can be read is no error, and is only named in the output.
+    * `depends`: folders with the types that the recordings lack.
 
-    Raises
-    ------
-    DefinitionError
-        If a recording cannot be used, or if the definition of a named type cannot be used or is
-        too large to be laid out (:func:`firm_hdl.wire.too_large`).
-    UnknownTypeError
-        If a named type has no topic, or if the recording has another wire format.
+    Raises `DefinitionError` if a recording cannot be used, or if the definition of a named type
+    cannot be used or is too large to be laid out (:func:`firm_hdl.wire.too_large`). Raises
+    `UnknownTypeError` if a named type has no topic, or if the recording has another wire format.
     """
     library = open_library(distro, bags=bags, depends=depends)
     recorded_wire = WIRE_OF[library.dialect]
@@ -316,12 +295,8 @@ REPRESENTATIONS = {
 def replay(options: Options, test: Test) -> Record:
     """Replay the messages of the type of a test. Errors are not raised, but are in the record.
 
-    Parameters
-    ----------
-    options : Options
-        Options with recordings.
-    test : Test
-        Its distribution is the one by whose rules the definitions in the recordings are read.
+    * `options`: options with recordings.
+    * `test`: its distribution is the one by whose rules the definitions in the recordings are read.
     """
     return measured(options, test, _replay)
 

@@ -35,10 +35,7 @@ __all__ = ["Ts3"]
 class Ts3(System):
     """The test system of TS3. A test is one type with one set of options.
 
-    Raises
-    ------
-    ProgramMissingError, ClientMissingError
-        When the system is entered.
+    Raises `ProgramMissingError` or `ClientMissingError`: when the system is entered.
     """
 
     name = "ts3"
@@ -71,9 +68,7 @@ class Ts3(System):
     def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Run all tasks with each of the options.
 
-        Raises
-        ------
-        ExecutorError
+        Raises `ExecutorError`.
         """
         began = time.perf_counter()
         found = [each for one in self._options for each in self._run(one, writer)]
