@@ -68,7 +68,7 @@ MAY_IMPORT["node"] = {
     # Verilog are read by GHDL and Verilator.
     *("firm_hdl", "errors", "files", "garbage", "names", "rtlil", "rtps", "terminal", "vhdl"),
     *("model", "frontend", "identity", "wire", "metrics", "plan", "timing", "estimates"),
-    *("drawing", "ethernet", "gateware", "sim", "export", "equivalence", "jobs"),
+    *("drawing", "ethernet", "gateware", "registers", "sim", "export", "equivalence", "jobs"),
 }
 MAY_IMPORT["arguments"] = {"frontend", "model", "plan"}
 MAY_IMPORT["covering"] = {

@@ -136,6 +136,12 @@ def _add_run(command: argparse.ArgumentParser) -> None:
         help="write the waveform of --board sim, as VCD or FST (FILE.vcd, FILE.fst)",
     )
     add_engine(command, "--board sim")
+    command.add_argument(
+        "--phc",
+        metavar="DEVICE",
+        help="let the clock of the node follow a PTP hardware clock, such as /dev/ptp0 (default: "
+        "the clock of the system)",
+    )
     command.add_argument("--quiet", action="store_true", help="print no figures")
 
 
@@ -234,6 +240,7 @@ def _act(args: argparse.Namespace, description: Description) -> None:
             engine=args.engine,
             quiet=args.quiet,
             wave=args.wave,
+            phc=args.phc,
         )
         return
     from firm_hdl.node.summary import facts_of, summary, warnings_of

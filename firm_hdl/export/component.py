@@ -208,14 +208,16 @@ class PlainPorts:
 class ComponentTop(PlainTop):
     """A component with ports of plain vectors. It adds neither registers nor latency.
 
-    `inside` is the component, if it was elaborated already.
+    `inside` is the component, if it was elaborated already; `also_resets` is as for `PlainTop`.
     """
 
     is_closed = False
 
-    def __init__(self, plain: PlainPorts, inside: Any = None):
+    def __init__(self, plain: PlainPorts, inside: Any = None, also_resets: Value | None = None):
         inside = plain.component if inside is None else inside
-        super().__init__(inside, plain.kind, plain.ports, plain.pins, plain.clocks)
+        super().__init__(
+            inside, plain.kind, plain.ports, plain.pins, plain.clocks, also_resets=also_resets
+        )
 
 
 def _messages(signature: Any, path: Path = ()) -> Iterator[FoundMessage]:

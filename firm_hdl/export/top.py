@@ -247,6 +247,8 @@ class PlainTop(Component):
         Those of all ports but clocks and resets.
     clocks : mapping of str to pair of str
         Ports of each clock domain: its clock, and its synchronous reset, active low.
+    also_resets : Value or None
+        Resets all domains while it is high.
     """
 
     def __init__(
@@ -256,14 +258,19 @@ class PlainTop(Component):
         ports: Iterable[Any],
         pins: Iterable[Pin],
         clocks: Mapping[str, tuple[str, str]] = AXIS_CLOCKS,
+        also_resets: Value | None = None,
     ):
+        self._also_resets = also_resets
         self._inside, self._name, self._pins, self._clocks = inside, name, list(pins), clocks
         super().__init__(port_members(ports))
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         for name, (clock, reset) in self._clocks.items():
-            add_domain(m, name, getattr(self, clock), getattr(self, reset))
+            resetn = getattr(self, reset)
+            if self._also_resets is not None:
+                resetn &= ~self._also_resets
+            add_domain(m, name, getattr(self, clock), resetn)
         m.submodules[self._name] = self._inside
         for pin in self._pins:
             name, value = pin.port.name, getattr(self, pin.port.name)

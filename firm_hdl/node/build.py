@@ -46,6 +46,7 @@ from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.copies import AcceleratorFiles, accelerator_files
 from firm_hdl.node.node import Node
 from firm_hdl.node.records import found_messages
+from firm_hdl.node.register_map import register_files, register_map
 from firm_hdl.node.summary import facts_of, summary
 from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.vhdl.convert import convert
@@ -157,6 +158,7 @@ def build_node(
         facts={
             **facts,
             "records": record_facts(name, messages, reason),
+            **_register_facts(description, name),
             "accelerator_files": own.facts(),
             "bench": None if script is None else _bench(name, own),
             "clock": "aclk",
@@ -236,6 +238,7 @@ def _files(
     verilog = verilog_file(netlist, name=name, header=header)
     return {
         **verilog,
+        **(register_files(description, name, header) if description.registers else {}),
         "waivers.vlt": waivers([module]) + lint.format(file=f"{module}.v"),
         **{f"systemverilog/{file}": text for file, text in structs.items()},
         **({} if is_vhdl else own.texts),
@@ -289,6 +292,20 @@ def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict
     }
 
 
+def _register_facts(description: Description, name: str) -> dict[str, Any]:
+    """Describe the registers on a bus of the chip for the manifest, if there are some."""
+    if not description.registers:
+        return {}
+    return {
+        "bus_registers": {
+            "bus": description.registers,
+            "system_rdl": f"{name}_registers.rdl",
+            "c_header": f"{name}_registers.h",
+            "registers": [asdict(each) for each in register_map(description).registers],
+        }
+    }
+
+
 def _ip(
     description: Description,
     name: str,
@@ -312,6 +329,7 @@ def _ip(
         ports=shown,
         title=f"Node {name}",
         description=f"Node {description.node} of ROS {description.distro}: frames on AXI4-Stream.",
+        table=register_map(description) if description.registers == "axi4lite" else None,
     )
 
 

@@ -12,7 +12,7 @@ from enum import IntEnum
 from typing import Any, Literal
 
 from firm_hdl.ethernet.drops import DROPS
-from firm_hdl.node.description import Description, Link
+from firm_hdl.node.description import SERVICE_PARTS, Description, Link
 
 __all__ = [
     "CONTROL_BYTES",
@@ -30,7 +30,9 @@ __all__ = [
     "Operation",
     "Register",
     "Result",
+    "counter_path",
     "ethernet_counter",
+    "is_loss",
     "link_counters",
     "nominal_rate",
     "registers",
@@ -236,6 +238,30 @@ def registers(description: Description) -> tuple[Register, ...]:
             for name in (*FIFO_COUNTERS, *_BYTES):
                 add(topic.name, "out", name, topic.id)
     return tuple(found)
+
+
+def counter_path(description: Description, register: Register) -> tuple[str, str]:
+    """Return the part and the name that a counter has among those of the node."""
+    if not register.topic:
+        return register.part, register.name
+    topic = description.topics[register.topic - 1]
+    part: str = topic.kind
+    if topic.kind == "serve":
+        part = SERVICE_PARTS["in" if register.part == "in" else "out"]
+    return f"{part}_{topic.port}", register.name
+
+
+_NO_LOSSES = (
+    *("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent"),
+    ethernet_counter("other"),
+)
+"""Counters that do not count losses: a request of control without room was repeated; before a host
+has spoken, all that a node sends is unsent; and a network has frames for others."""
+
+
+def is_loss(register: Register) -> bool:
+    """Return whether a counter counts losses, or says why something was lost."""
+    return register.part != "identity" and register.name not in _NO_LOSSES
 
 
 def nominal_rate(clock_hz: float) -> int:

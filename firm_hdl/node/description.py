@@ -22,6 +22,7 @@ __all__ = [
     "ETHERNETS",
     "LINKS",
     "NODE_BUS_BYTES",
+    "REGISTER_BUSES",
     "SERVICE_PARTS",
     "Description",
     "Direction",
@@ -52,6 +53,11 @@ LinkKind: TypeAlias = Literal["stream", "axi_dma", "udp", "uart", "rtps"]
 
 LINKS: tuple[LinkKind, ...] = ("stream", "axi_dma", "udp", "uart", "rtps")
 """All links."""
+
+RegisterBus: TypeAlias = Literal["axi4lite", "csr"]
+
+REGISTER_BUSES: tuple[RegisterBus, ...] = ("axi4lite", "csr")
+"""Buses on which a node has registers: AXI4-Lite, or the CSR bus of amaranth-soc."""
 
 SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
 """What a service has in each direction."""
@@ -311,12 +317,14 @@ class Description:
         node.
     hdl : Hdl or None
         The files of an accelerator that is not in Amaranth.
+    registers : "axi4lite", "csr" or ""
+        The bus on which the node has registers; empty: it has none.
     pins : tuple of IoPins
         Pins of a board, for its bitstream. The node itself does not depend on them.
     folder : str
         The folder of the file, in which the module of the accelerator is searched, too.
-    accelerator_span, clock_span, link_span, node_span : Span or None
-        The accelerator, the clock, the link and the name of the node in the file.
+    accelerator_span, clock_span, link_span, node_span, registers_span : Span or None
+        The accelerator, the clock, the link, the name and the registers of the node in the file.
     """
 
     node: str
@@ -329,12 +337,14 @@ class Description:
     topics: tuple[Topic, ...]
     accelerator: str = ""
     hdl: Hdl | None = None
+    registers: RegisterBus | Literal[""] = ""
     pins: tuple[IoPins, ...] = ()
     folder: str = field(default="", compare=False)
     accelerator_span: Span | None = field(default=None, compare=False, repr=False)
     clock_span: Span | None = field(default=None, compare=False, repr=False)
     link_span: Span | None = field(default=None, compare=False, repr=False)
     node_span: Span | None = field(default=None, compare=False, repr=False)
+    registers_span: Span | None = field(default=None, compare=False, repr=False)
 
     def of_kind(self, kind: Kind) -> tuple[Topic, ...]:
         """Return the topics of a kind, in the order of their ids."""

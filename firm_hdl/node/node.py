@@ -18,8 +18,8 @@ from firm_hdl.node.accelerator import (
 from firm_hdl.node.description import Description
 from firm_hdl.node.gateware import NodeCore, time_layout
 from firm_hdl.node.gateware.converters import NodeConverters, message_groups
-from firm_hdl.node.gateware.core import node_counters_layout
-from firm_hdl.node.gateware.streams import passes
+from firm_hdl.node.gateware.registers import NodeRegisters, node_register_members
+from firm_hdl.node.gateware.streams import node_counters_layout, passes
 from firm_hdl.node.links import link_of, medium_of
 from firm_hdl.node.rtps.idle import TopicIdle
 
@@ -47,6 +47,8 @@ class Node(Component):
         Such as `link.datagrams_in` of a :class:`firm_hdl.node.links.UdpLink`.
     time : Out(time_layout())
     counters : Out(node_counters_layout(description))
+    axi or csr, interrupt, soft_reset
+        As :func:`.node_register_members` has them; only with registers.
     io : the other members of the accelerator
         Only with an accelerator that has some.
     subscribe, publish, serve : as `message_groups` has them
@@ -78,6 +80,7 @@ class Node(Component):
             "link": Out(wiring.Signature(medium_of(description))),
             "time": Out(time_layout()),
             "counters": Out(node_counters_layout(description)),
+            **node_register_members(description),
         }
         if accelerator is None:
             groups = message_groups(description)
@@ -100,6 +103,8 @@ class Node(Component):
             self.counters.eq(core.counters),
         ]
         _bring_out(m, self.link, link)
+        if description.registers:
+            self._add_registers(m, core)
         if description.link.kind == "rtps":
             came = [topic for topic in description.topics if topic.has("in")]
             m.d.comb += link.idle.eq(Cat(TopicIdle.of(m, topic, core) for topic in came))
@@ -120,6 +125,18 @@ class Node(Component):
         if "io" in self.signature.members:
             _bring_out(m, self.io, accelerator)
         return m
+
+    def _add_registers(self, m: Module, core: NodeCore) -> None:
+        m.submodules.registers = own = NodeRegisters(self.description)
+        wiring.connect(m, core.registers, own.core)
+        bus = "axi" if self.description.registers == "axi4lite" else "csr"
+        wiring.connect(m, wiring.flipped(getattr(self, bus)), getattr(own, bus))
+        m.d.comb += [
+            own.time.eq(core.time),
+            own.counters.eq(core.counters),
+            self.interrupt.eq(own.interrupt),
+            self.soft_reset.eq(own.soft_reset),
+        ]
 
 
 def _bring_out(m: Module, outer: Any, inner: Any) -> None:

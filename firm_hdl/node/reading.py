@@ -23,6 +23,7 @@ from firm_hdl.model import WIRE_OF, Action, Interface, Message, Service
 from firm_hdl.names.keywords import KEYWORDS
 from firm_hdl.node.description import (
     NODE_BUS_BYTES,
+    REGISTER_BUSES,
     Description,
     Direction,
     Hdl,
@@ -55,7 +56,7 @@ MOST_COMPARED = 1000
 KINDS: tuple[Kind, ...] = ("subscribe", "publish", "serve")
 
 _KEYS = ("node", "namespace", "distro", "paths", "bags", "bus_bytes", "clock_mhz", "link", "remap")
-KEYS = (*_KEYS, *KINDS, "accelerator", "pins")
+KEYS = (*_KEYS, *KINDS, "accelerator", "registers", "pins")
 
 LANGUAGES = ("vhdl", "verilog", "systemverilog")
 
@@ -179,6 +180,7 @@ class _Reader:
         accelerator, hdl = "", None
         if "accelerator" in known:
             accelerator, hdl = self._accelerator(known["accelerator"])
+        bus: Any = known["registers"].choice(REGISTER_BUSES, "") if "registers" in known else ""
         pins = self._pins(known["pins"]) if "pins" in known else ()
         if pins and "accelerator" not in known:
             known["pins"].error_at_key("'pins' are those of an accelerator, which is not there")
@@ -197,12 +199,14 @@ class _Reader:
             topics=tuple(topics),
             accelerator=accelerator,
             hdl=hdl,
+            registers=bus,
             pins=pins,
             folder=self.folder,
             accelerator_span=span("accelerator") if accelerator else None,
             clock_span=span("clock_mhz"),
             link_span=span("link"),
             node_span=span("node"),
+            registers_span=span("registers"),
         )
 
     def _accelerator(self, entry: Entry) -> tuple[str, Hdl | None]:

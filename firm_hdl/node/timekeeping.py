@@ -7,11 +7,15 @@ response came, so it knows the distance of the clocks up to half of that delay, 
 
 from __future__ import annotations
 
+import os
+import time
 from collections import deque
+from collections.abc import Callable
 
+from firm_hdl.errors import UserError
 from firm_hdl.node.control import ControlRequest, ControlResponse, Operation
 
-__all__ = ["ClockKeeper"]
+__all__ = ["ClockKeeper", "ptp_clock", "with_seconds_of"]
 
 SECOND_NS = 1_000_000_000
 
@@ -95,6 +99,45 @@ class ClockKeeper:
         correction = _limited(self._drift - _PROPORTIONAL * error)
         rate = round(self._nominal * (1 + correction))
         return ControlRequest(operation=Operation.SET_RATE, argument=rate)
+
+
+def ptp_clock(device: str) -> Callable[[], int]:
+    """Return a function that reads a PTP hardware clock of the host, in ns since the epoch.
+
+    Such a clock often runs in TAI, or has never been set. So its whole seconds become those of the
+    system's clock, which ROS has, as they are now.
+
+    Parameters
+    ----------
+    device : str
+        Such as ``/dev/ptp0``.
+
+    Raises
+    ------
+    UserError
+        If it cannot be read; also later, by the function.
+    """
+    try:
+        file = os.open(device, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError as error:
+        raise UserError(f"cannot open the clock '{device}': {error.strerror}") from None
+    # FD_TO_CLOCKID of clock_getres(2): a dynamic clock is named by its open file.
+    number = (~file << 3) | 3
+
+    def read() -> int:
+        try:
+            return time.clock_gettime_ns(number)
+        except OSError as error:
+            reason = f"cannot read '{device}' as a PTP hardware clock: {error.strerror}"
+            raise UserError(reason) from None
+
+    return with_seconds_of(time.time_ns, read)
+
+
+def with_seconds_of(system: Callable[[], int], clock: Callable[[], int]) -> Callable[[], int]:
+    """Return a clock less its distance from another one, as it is now, in whole seconds."""
+    ahead = round((clock() - system()) / SECOND_NS) * SECOND_NS
+    return lambda: clock() - ahead
 
 
 def _limited(correction: float) -> float:

@@ -24,6 +24,9 @@ _LINK: dict[str, str] = {
 }
 """How ports of links are called."""
 
+_REGISTERS = {"axi": "s_axi", "interrupt": "irq"}
+"""How those of registers are called; others have the names of their members."""
+
 
 class NodeTop(ComponentTop):
     """A node with ports of plain vectors. It adds neither registers nor latency.
@@ -31,6 +34,7 @@ class NodeTop(ComponentTop):
     `aclk` is the clock; `aresetn` is a synchronous reset, active low. A stream of frames is
     AXI4-Stream, ``s_axis`` and ``m_axis``. All other ports have the names of the node's members,
     joined by ``_``: ``subscribe_cmd_vel_linear_x_data``.
+    A soft reset by registers acts as `aresetn` does.
 
     Parameters
     ----------
@@ -42,7 +46,7 @@ class NodeTop(ComponentTop):
     """
 
     def __init__(self, node: Node):
-        super().__init__(_plain(node))
+        super().__init__(_plain(node), also_resets=getattr(node, "soft_reset", None))
 
 
 def node_ports(node: Node) -> tuple[ComponentPort, ...]:
@@ -68,7 +72,7 @@ def _plain(node: Node) -> PlainPorts:
 def _spelled(path: Path) -> Path:
     """Return the path from which the name of a port is made."""
     if path[0] != "link":
-        return path
+        return (_REGISTERS.get(path[0], path[0]), *path[1:])
     if path[1] == "dest":
         return ("m_axis", "tdest")
     if path[1] == "pieces_in":

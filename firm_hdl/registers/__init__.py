@@ -1,4 +1,4 @@
-"""Registers on AXI4-Lite: a block for any table of registers, and messages as registers.
+"""Registers on AXI4-Lite or a CSR bus: blocks for any table of registers, messages as registers.
 
 A :class:`RegisterMap` is the only home of names, addresses and meanings. From it come the circuit,
 the SystemRDL, the header for C and the manifest.
@@ -6,7 +6,8 @@ the SystemRDL, the header for C and the manifest.
 
 from firm_hdl.registers.axi_lite import AxiLiteSignature, AxiLiteSlave
 from firm_hdl.registers.block import RegisterBlock
-from firm_hdl.registers.c_header import c_header
+from firm_hdl.registers.buses import CsrSignature, CsrSlave
+from firm_hdl.registers.c_header import c_header, table_c_header
 from firm_hdl.registers.converters import RegisterReceiver, RegisterSender
 from firm_hdl.registers.message import Item, MessageMap, message_map
 from firm_hdl.registers.system_rdl import system_rdl
@@ -15,6 +16,8 @@ from firm_hdl.registers.table import Field, Register, RegisterMap
 __all__ = [
     "AxiLiteSignature",
     "AxiLiteSlave",
+    "CsrSignature",
+    "CsrSlave",
     "Field",
     "Item",
     "MessageMap",
@@ -26,4 +29,5 @@ __all__ = [
     "c_header",
     "message_map",
     "system_rdl",
+    "table_c_header",
 ]

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 from firm_hdl.model import Array, FieldType, Message, Primitive
 from firm_hdl.names.identifiers import scope_names
-from firm_hdl.registers.message import MESSAGE_ADDRESS, MessageMap, members_of, size_of
+from firm_hdl.registers.head import BODY_ADDRESS
+from firm_hdl.registers.message import MessageMap, members_of, size_of
+from firm_hdl.registers.table import RegisterMap
 
-__all__ = ["c_header"]
+__all__ = ["c_header", "table_c_header"]
 
 _KEYWORDS = frozenset(
     "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t "
@@ -61,10 +64,11 @@ static inline int {name}_is(volatile const uint32_t *registers)
 {{
   return registers[{prefix}_ID / 4] == {prefix}_ID_RESET
     && registers[{prefix}_VERSION / 4] >> 16 == {prefix}_VERSION_MAJOR_RESET
-    && registers[{prefix}_FINGERPRINT_LOW / 4] == {prefix}_FINGERPRINT_LOW_RESET
-    && registers[{prefix}_FINGERPRINT_HIGH / 4] == {prefix}_FINGERPRINT_HIGH_RESET;
+    && {same};
 }}
 """
+
+_FINGERPRINT = ("fingerprint_low", "fingerprint_high")
 
 
 def c_header(layout: MessageMap, header: str = "") -> str:
@@ -75,39 +79,71 @@ def c_header(layout: MessageMap, header: str = "") -> str:
     header : str
         Lines of the comment at the head.
     """
-    table = layout.table
-    name, prefix = table.name, table.name.upper()
+    name, prefix = layout.table.name, layout.table.name.upper()
     words = -(-layout.size // 4)
-    values = {"name": name, "type": layout.name, "prefix": prefix, "words": words}
-    comment = "".join(f" * {_plain(line)}".rstrip() + "\n" for line in header.splitlines())
     exchange = _READ if layout.direction == "deserializer" else _WRITE
+    message = [
+        f"\n/* The message, from {prefix}_MESSAGE on. What has no fixed size is left out. */",
+        f"#define {prefix}_MESSAGE {BODY_ADDRESS:#04x}",
+        f"#define {prefix}_MESSAGE_WORDS {words}\n",
+        f"#ifndef {layout.name.upper()}_T\n#define {layout.name.upper()}_T",
+        "typedef struct {",
+        *_members(layout.message, layout.shape, "  "),
+        f"}} {layout.name}_t;\n",
+        *_asserts(layout),
+        "#endif\n",
+    ]
+    functions = exchange.format(name=name, type=layout.name, prefix=prefix, words=words)
+    own = replace(
+        layout.table,
+        registers=tuple(each for each in layout.table.registers if each.address < BODY_ADDRESS),
+    )
+    return table_c_header(own, header, types=message, functions=functions)
+
+
+def table_c_header(
+    table: RegisterMap,
+    header: str = "",
+    *,
+    types: Iterable[str] = (),
+    same: Iterable[str] = _FINGERPRINT,
+    functions: str = "",
+) -> str:
+    """Write a header of a table that begins with those of :mod:`firm_hdl.registers.head`.
+
+    Parameters
+    ----------
+    header : str
+        Lines of the comment at the head.
+    types : iterable of str
+        Lines of C behind the addresses.
+    same : iterable of str
+        Constants of 32 bits that tell whether the registers are those of the header.
+    functions : str
+        C behind the function ``NAME_is``.
+    """
+    name, prefix = table.name, table.name.upper()
+    comment = "".join(f" * {_plain(line)}".rstrip() + "\n" for line in header.splitlines())
+    compared = "\n    && ".join(
+        f"registers[{prefix}_{each} / 4] == {prefix}_{each}_RESET" for each in map(str.upper, same)
+    )
     return "\n".join(
         [
             f"/*\n{comment} *\n * {_plain(table.meaning)}\n */\n",
             f"#ifndef {prefix}_H\n#define {prefix}_H\n",
             "#include <stddef.h>\n#include <stdint.h>\n#include <string.h>\n",
             "/* Addresses in bytes; of a field its mask, its lowest bit, and its reset value. */",
-            *_defines(layout, prefix),
-            f"\n/* The message, from {prefix}_MESSAGE on. What has no fixed size is left out. */",
-            f"#define {prefix}_MESSAGE {MESSAGE_ADDRESS:#04x}",
-            f"#define {prefix}_MESSAGE_WORDS {words}\n",
-            f"#ifndef {layout.name.upper()}_T\n#define {layout.name.upper()}_T",
-            "typedef struct {",
-            *_members(layout.message, layout.shape, "  "),
-            f"}} {layout.name}_t;\n",
-            *_asserts(layout),
-            "#endif\n",
-            _CHECK.format(**values),
-            exchange.format(**values),
+            *_defines(table, prefix),
+            *types,
+            _CHECK.format(name=name, prefix=prefix, same=compared),
+            functions,
             "#endif\n",
         ]
     )
 
 
-def _defines(layout: MessageMap, prefix: str) -> Iterator[str]:
-    for register in layout.table.registers:
-        if register.address >= MESSAGE_ADDRESS:
-            continue
+def _defines(table: RegisterMap, prefix: str) -> Iterator[str]:
+    for register in table.registers:
         base = f"{prefix}_{register.name.upper()}"
         yield f"#define {base} {register.address:#04x}  /* {_plain(register.meaning)} */"
         for field in register.fields:

@@ -13,8 +13,7 @@ from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.plan import Direction, Plan
-from firm_hdl.registers.axi_lite import AxiLiteSignature, AxiLiteSlave
-from firm_hdl.registers.block import RegisterBlock
+from firm_hdl.registers.buses import BusKind, add_registers, register_members
 from firm_hdl.registers.message import MessageMap
 
 __all__ = ["RegisterReceiver", "RegisterSender"]
@@ -29,38 +28,32 @@ class _Registers(Component):
         Made with `plan`, and with the direction of the class.
     plan : Plan
         The plan of the converter.
+    bus : "axi4lite" or "csr"
     """
 
     axi: Any
-    packets: PacketStream
+    csr: Any
     interrupt: Value
+    packets: PacketStream
 
     _direction: Direction
 
-    def __init__(self, layout: MessageMap, plan: Plan):
+    def __init__(self, layout: MessageMap, plan: Plan, bus: BusKind = "axi4lite"):
         if layout.direction != self._direction:
             raise ValueError(f"The registers are those of a {layout.direction}")
-        self.layout, self.plan = layout, plan
+        self.layout, self.plan, self.bus = layout, plan, bus
         flow = In if self._direction == "deserializer" else Out
         super().__init__(
             {
-                "axi": In(AxiLiteSignature(layout.table.address_bits)),
+                **register_members(layout.table, bus),
                 "packets": flow(PacketSignature(plan.bus_bytes)),
-                "interrupt": Out(1),
             }
         )
 
     def _block(self, m: Module) -> Any:
         """Add the registers; return their block."""
-        m.submodules.slave = slave = AxiLiteSlave(self.layout.table.address_bits)
-        m.submodules.registers = block = RegisterBlock(self.layout.table)
-        connect(m, flipped(self.axi), slave.axi)
-        connect(m, slave.bus, block.bus)
-        m.d.comb += block.clears.eq(block.control_reset)
-        events = Cat(block.interrupt_message, block.interrupt_error)
-        enabled = Cat(block.interrupt_enable_message, block.interrupt_enable_error)
-        m.d.sync += self.interrupt.eq((events & enabled).any())
-        return block
+        port = flipped(self.axi if self.bus == "axi4lite" else self.csr)
+        return add_registers(m, port, self.layout.table, self.interrupt)
 
     def _count(self, m: Module, block: Any, status: Any, ends: Value, skips: Value) -> None:
         """Count packets when they end with a status, and what is skipped; keep the status."""
@@ -98,10 +91,9 @@ class RegisterReceiver(_Registers):
 
     Members
     -------
-    axi : In(AxiLiteSignature)
+    axi or csr, interrupt
+        As :func:`.register_members` has them.
     packets : In(PacketSignature(bus_bytes))
-    interrupt : Out(1)
-        High while an event is set whose interrupt is enabled. A register.
     """
 
     _direction = "deserializer"
@@ -147,10 +139,9 @@ class RegisterSender(_Registers):
 
     Members
     -------
-    axi : In(AxiLiteSignature)
+    axi or csr, interrupt
+        As :func:`.register_members` has them.
     packets : Out(PacketSignature(bus_bytes))
-    interrupt : Out(1)
-        High while an event is set whose interrupt is enabled. A register.
     """
 
     _direction = "serializer"

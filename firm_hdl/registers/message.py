@@ -17,15 +17,19 @@ from firm_hdl.gateware.record_layout import record_layout
 from firm_hdl.model import Array, FieldType, Message, Primitive
 from firm_hdl.names.identifiers import first_free, identifier
 from firm_hdl.plan import Direction, Plan
+from firm_hdl.registers.head import (
+    BODY_ADDRESS,
+    LATCHED,
+    bits,
+    control_register,
+    identity_registers,
+    interrupt_registers,
+    word,
+)
 from firm_hdl.registers.table import WORD_BYTES, Field, Kind, Register, RegisterMap
 
-__all__ = ["ID", "MAX_BYTES", "MESSAGE_ADDRESS", "VERSION", "Item", "MessageMap", "message_map"]
+__all__ = ["MAX_BYTES", "Item", "MessageMap", "message_map"]
 
-ID = int.from_bytes(b"FIRM", "little")
-VERSION = (1, 0)
-"""Of the registers before the message: a new minor one adds some."""
-
-MESSAGE_ADDRESS = 0x40
 MAX_BYTES = 4096
 """Largest block of a message. Each of its bits is a register, and is read through a multiplexer."""
 
@@ -220,7 +224,7 @@ def _words(
         registers.append(
             Register(
                 name=alone,
-                address=MESSAGE_ADDRESS + WORD_BYTES * word,
+                address=BODY_ADDRESS + WORD_BYTES * word,
                 fields=tuple(fields),
                 meaning=fields[0].meaning if len(fields) == 1 else "Several values.",
             )
@@ -237,89 +241,36 @@ def _dotted(item: Item) -> str:
     return "".join(parts).removeprefix(".")
 
 
-def _common(direction: Direction, fingerprint: int) -> list[Register]:
+def _common(direction: Direction, fingerprint: int) -> tuple[Register, ...]:
     """Return the registers before the message."""
     comes = direction == "deserializer"
-    low, high = fingerprint & 0xFFFF_FFFF, fingerprint >> 32
-    identity = "Of type, wire format, direction and layout."
     event, error = ("A good message came.", "A packet had an error.")
     skipped = "Good messages that a newer one replaced before a commit."
     commit = "Show the newest message in the words."
     state = [
-        _field("status", "new", 0, 1, "A good message came after the last commit."),
-        _field("status", "shown", 1, 1, "The words are a message."),
+        bits("status", "new", 0, 1, "A good message came after the last commit."),
+        bits("status", "shown", 1, 1, "The words are a message."),
     ]
     if not comes:
         event, skipped = "A message was sent.", "Commits while busy, which did nothing."
         commit = "Send the words as a message, unless the one before is still busy."
         taken = "The serializer takes the message of the last commit."
-        state = [_field("status", "busy", 0, 1, taken)]
-    return [
-        _word(0x00, "id", "constant", "The text FIRM.", ID),
-        Register(
-            name="version",
-            address=0x04,
-            meaning="Of the registers before the message.",
-            fields=(
-                _field("constant", "minor", 0, 16, "Raised by what only adds.", VERSION[1]),
-                _field("constant", "major", 16, 16, "Raised by all other changes.", VERSION[0]),
-            ),
-        ),
-        _word(0x08, "fingerprint_low", "constant", identity, low),
-        _word(0x0C, "fingerprint_high", "constant", identity, high),
-        Register(
-            name="control",
-            address=0x10,
-            meaning="A written 1 acts once.",
-            fields=(
-                _field("pulse", "commit", 0, 1, commit),
-                _field("pulse", "latch", 1, 1, "Latch all counters."),
-                _field("pulse", "reset", 2, 1, "Reset all registers; cuts no packet."),
-            ),
+        state = [bits("status", "busy", 0, 1, taken)]
+    good = "Good messages" if comes else "Messages sent"
+    return (
+        *identity_registers(fingerprint, "Of type, wire format, direction and layout."),
+        control_register(
+            bits("pulse", "commit", 0, 1, commit),
+            reset="Reset all registers; cuts no packet.",
         ),
         Register(
             name="status",
             address=0x14,
             meaning="The state of the converter.",
-            fields=(
-                *state,
-                _field("status", "code", 8, 8, "Status of the last packet; 0 is OK."),
-            ),
+            fields=(*state, bits("status", "code", 8, 8, "Status of the last packet; 0 is OK.")),
         ),
-        Register(
-            name="interrupt_enable",
-            address=0x18,
-            meaning="Events that raise the interrupt.",
-            fields=(
-                _field("setting", "message", 0, 1, event),
-                _field("setting", "error", 1, 1, error),
-            ),
-        ),
-        Register(
-            name="interrupt",
-            address=0x1C,
-            meaning="Events; a written 1 clears one.",
-            fields=(
-                _field("event", "message", 0, 1, event),
-                _field("event", "error", 1, 1, error),
-            ),
-        ),
-        _word(
-            0x20, "messages", "status", f"{'Good messages' if comes else 'Messages sent'}.{_OLD}"
-        ),
-        _word(0x24, "errors", "status", f"Packets with an error.{_OLD}"),
-        _word(0x28, "skipped", "status", f"{skipped}{_OLD}"),
-    ]
-
-
-_OLD = " As at the last latch; stops at its largest value."
-
-
-def _field(kind: Kind, name: str, low: int, bits: int, meaning: str, reset: int = 0) -> Field:
-    return Field(name=name, low=low, bits=bits, kind=kind, meaning=meaning, reset=reset)
-
-
-def _word(address: int, name: str, kind: Kind, meaning: str, reset: int = 0) -> Register:
-    """Return a register with one field."""
-    only = _field(kind, name, 0, 32, meaning, reset)
-    return Register(name=name, address=address, fields=(only,), meaning=meaning)
+        *interrupt_registers(event, error),
+        word(0x20, "messages", "status", f"{good}.{LATCHED}"),
+        word(0x24, "errors", "status", f"Packets with an error.{LATCHED}"),
+        word(0x28, "skipped", "status", f"{skipped}{LATCHED}"),
+    )

@@ -1,4 +1,4 @@
-"""A cocotb bench: cocotbext-axi's master on both converters with registers, with random pauses.
+"""A cocotb bench: cocotbext-axi's masters on converters and a node, with random pauses.
 
 The Python of a simulator runs this module; :mod:`tests.registers.test_verilog` starts it. What has
 to be in the words follows from `struct` of Python, and what has to be in packets from rosbags.
@@ -6,6 +6,7 @@ to be in the words follows from `struct` of Python, and what has to be in packet
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import struct
@@ -15,6 +16,7 @@ from pathlib import Path
 import cocotb
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, Combine, RisingEdge, with_timeout
+from cocotb.utils import get_sim_time
 from cocotbext.axi import (
     AxiLiteBus,
     AxiLiteMaster,
@@ -25,6 +27,9 @@ from cocotbext.axi import (
     AxiStreamSource,
 )
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from firm_hdl.node.control import ControlRequest, ControlResponse, Operation
+from firm_hdl.node.messages import MessageReceiver, MessageSender, NodeMessage
 
 ROUNDS = int(os.environ["ROUNDS"])
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -39,6 +44,11 @@ ID, FINGERPRINT, CONTROL, STATUS, ENABLE, EVENTS, MESSAGES = 0, 8, 0x10, 0x14, 0
 WORDS = 0x40
 END = WORDS + -(-SIZE // 4) * 4
 COMMIT, LATCH, RESET = 1, 2, 4
+STREAMS = ("rx_s_axis", "tx_m_axis", "node_s_axis", "node_m_axis")
+NODE = {each["name"]: each for each in json.loads(os.environ["NODE"])}
+AT = {name: each["address"] for name, each in NODE.items()}
+SET_TIME, SET_RATE = 1, 8
+NS = 22  # The rate of a clock has so many bits behind the point.
 
 
 def random_values(chosen):
@@ -77,10 +87,11 @@ def pauses(seed):
 
 
 async def begin(dut):
+    """Start the clock; return a master, a source of packets and a sink of each design."""
     cocotb.start_soon(Clock(dut.aclk, 10, "ns").start())
     reset = {"reset": dut.aresetn, "reset_active_level": False}
     masters = {}
-    for number, side in enumerate(("rx", "tx")):
+    for number, side in enumerate(("rx", "tx", "node")):
         bus = AxiLiteBus.from_prefix(dut, f"{side}_s_axi")
         masters[side] = master = AxiLiteMaster(bus, dut.aclk, **reset)
         write, read = master.write_if, master.read_if
@@ -88,20 +99,23 @@ async def begin(dut):
         channels += [read.ar_channel, read.r_channel]
         for each, channel in enumerate(channels):
             channel.set_pause_generator(pauses(10 * number + each))
-    source = AxiStreamSource(AxiStreamBus.from_prefix(dut, "rx_s_axis"), dut.aclk, **reset)
-    sink = AxiStreamSink(AxiStreamBus.from_prefix(dut, "tx_m_axis"), dut.aclk, **reset)
-    source.set_pause_generator(pauses(30))
-    sink.set_pause_generator(pauses(31))
+    buses = {each: AxiStreamBus.from_prefix(dut, each) for each in STREAMS}
+    ends = {
+        each: (AxiStreamSource if "_s_" in each else AxiStreamSink)(bus, dut.aclk, **reset)
+        for each, bus in buses.items()
+    }
+    for number, each in enumerate(ends.values()):
+        each.set_pause_generator(pauses(30 + number))
     dut.aresetn.value = 0
     await ClockCycles(dut.aclk, 3)
     assert not any(
         getattr(dut, f"{side}_s_axi_{name}").value
-        for side in ("rx", "tx")
+        for side in masters
         for name in ("bvalid", "rvalid")
     )
     dut.aresetn.value = 1
     await RisingEdge(dut.aclk)
-    return masters["rx"], masters["tx"], source, sink
+    return {**masters, **ends}
 
 
 async def word(master, address):
@@ -120,11 +134,41 @@ async def counters(master):
     return [await word(master, MESSAGES + 4 * k) for k in range(3)]
 
 
+async def transfer_at_random(master, held, bits, free, known):
+    """Bytes that were written are read; wrong addresses fail and change nothing.
+
+    `held` has the bytes that are read, `bits` those that can be written. `free` and `known` are
+    words that can be written and read, besides the control register, to which only 0 is written.
+    """
+    chosen, end = random.Random(1), len(held)
+    for number in range(ROUNDS):
+        near = chosen.random() < 0.9
+        address = chosen.randrange(end + 8) if near else chosen.randrange(4096)
+        count = chosen.randint(1, 4 - address % 4)
+        place, index = address // 4, slice(address, address + count)
+        if chosen.random() < 0.5:
+            data = chosen.randbytes(count)
+            if place == CONTROL // 4:
+                # What acts is no subject here.
+                data = bytes(count)
+            got = await with_timeout(master.write(address, data), 100, "us")
+            good = place in free or place == CONTROL // 4
+            if place in free:
+                kept = zip(bits[index], data, strict=True)
+                held[index] = bytes(mask & value for mask, value in kept)
+        else:
+            got = await with_timeout(master.read(address, count), 100, "us")
+            good = place in known
+            assert got.data == (bytes(held[index]) if good else bytes(count)), (
+                number,
+                hex(address),
+            )
+        assert got.resp == (AxiResp.OKAY if good else AxiResp.SLVERR), (number, hex(address))
+
+
 @cocotb.test()
 async def any_transfers(dut):
-    """Bytes that were written are read; wrong addresses fail and change nothing."""
-    _, tx, _, _ = await begin(dut)
-    chosen = random.Random(1)
+    tx = (await begin(dut))["tx"]
     held = bytearray(END)
     # Bits that can be written: of a bool the lowest one, and none of the padding.
     bits = bytearray(END)
@@ -146,34 +190,123 @@ async def any_transfers(dut):
     held[FINGERPRINT : FINGERPRINT + 8] = int(os.environ["FINGERPRINT"]).to_bytes(8, "little")
     free = {ENABLE // 4, EVENTS // 4, *range(WORDS // 4, END // 4)}
     known = {*range((MESSAGES + 12) // 4), *range(WORDS // 4, END // 4)}
-    for number in range(ROUNDS):
-        near = chosen.random() < 0.9
-        address = chosen.randrange(END + 8) if near else chosen.randrange(4096)
-        count = chosen.randint(1, 4 - address % 4)
-        place, index = address // 4, slice(address, address + count)
-        if chosen.random() < 0.5:
-            data = chosen.randbytes(count)
-            if place == CONTROL // 4:
-                # What would send a message is no subject here.
-                data = bytes(count)
-            got = await with_timeout(tx.write(address, data), 100, "us")
-            good = place in free or place == CONTROL // 4
-            if place in free:
-                kept = zip(bits[index], data, strict=True)
-                held[index] = bytes(mask & value for mask, value in kept)
-        else:
-            got = await with_timeout(tx.read(address, count), 100, "us")
-            good = place in known
-            assert got.data == (bytes(held[index]) if good else bytes(count)), (
-                number,
-                hex(address),
-            )
-        assert got.resp == (AxiResp.OKAY if good else AxiResp.SLVERR), (number, hex(address))
+    await transfer_at_random(tx, held, bits, free, known)
+
+
+@cocotb.test()
+async def any_transfers_with_a_node(dut):
+    node = (await begin(dut))["node"]
+    end = max(AT.values()) + 4
+    held, bits = bytearray(end), bytearray(end)
+    for each in NODE.values():
+        for field in each["fields"]:
+            word = slice(each["address"], each["address"] + 4)
+            if field["kind"] in ("constant", "setting"):
+                value = int.from_bytes(held[word], "little") | field["reset"] << field["low"]
+                held[word] = value.to_bytes(4, "little")
+            if field["kind"] == "setting":
+                value = (1 << field["bits"]) - 1 << field["low"]
+                old = int.from_bytes(bits[word], "little")
+                bits[word] = (old | value).to_bytes(4, "little")
+    held[AT["rate"] : AT["rate"] + 4] = (10 << NS).to_bytes(4, "little")
+    writes = ("setting", "event")
+    free = {e["address"] // 4 for e in NODE.values() if e["fields"][0]["kind"] in writes}
+    await transfer_at_random(node, held, bits, free, {each // 4 for each in AT.values()})
+
+
+@cocotb.test()
+async def node_is_seen(dut):
+    """Counters, interrupt and clock of a node, and its reset."""
+    ends = await begin(dut)
+    node, source, sink = ends["node"], ends["node_s_axis"], ends["node_m_axis"]
+    sender = MessageSender()
+
+    async def send(*packets, topic=1):
+        for packet in packets:
+            for frame in sender.frames(NodeMessage(topic=topic, packet=packet)):
+                await source.send(AxiStreamFrame(frame))
+        await with_timeout(source.wait(), 100, "us")
+        await ClockCycles(dut.aclk, 200)
+
+    async def latched(*names):
+        await put(node, CONTROL, LATCH)
+        return [await word(node, AT[name]) for name in names]
+
+    async def now():
+        """Return the time of the node, and the earliest and the latest time of the latch."""
+        first = get_sim_time("ns")
+        await put(node, CONTROL, LATCH)
+        last = get_sim_time("ns")
+        sec, nanosec = [await word(node, AT[f"time_{each}"]) for each in ("sec", "nanosec")]
+        return sec * 10**9 + nanosec, first, last
+
+    async def check_rate(rate):
+        a, first, then = await now()
+        await ClockCycles(dut.aclk, 100)
+        b, later, last = await now()
+        assert (later - then) * rate <= b - a <= (last - first) * rate
+
+    names = ("subscribe_came_passed", "subscribe_came_truncated", "publish_goes_passed")
+    names += ("subscribe_came_bytes_low", "subscribe_came_bytes_high", "link_passed")
+    good, bad = bytes([0, 1, 0, 0, 7]), bytes([0, 1, 0, 0])
+    for enabled, packets in ((1, [bad]), (2, [good] * 3)):
+        await put(node, ENABLE, enabled)
+        await send(*packets)
+        assert await word(node, EVENTS) == 3 - enabled and dut.node_irq.value == 0
+        await put(node, ENABLE, 3)
+        await ClockCycles(dut.aclk, 2)
+        assert dut.node_irq.value == 1
+        await put(node, EVENTS, 3)
+        await ClockCycles(dut.aclk, 2)
+        assert dut.node_irq.value == 0
+    assert [await word(node, AT[name]) for name in names] == [0] * 6
+    assert await latched(*names) == [3, 1, 3, 15, 0, 4]
+    await send(good)
+    assert await word(node, AT["subscribe_came_passed"]) == 3
+    assert (await latched(*names))[:4] == [4, 1, 4, 20]
+    # The clock: two words are set in one cycle, and no time that is none.
+    await check_rate(1)
+    for name, value in (("new_sec", 7), ("new_nanosec", 999_999_990), ("new_rate", 15 << NS)):
+        await put(node, AT[name], value)
+    first = get_sim_time("ns")
+    await put(node, CONTROL, SET_TIME)
+    time, _, last = await now()
+    assert 0 < time - 7_999_999_990 < last - first
+    await put(node, AT["new_nanosec"], 10**9)
+    await put(node, CONTROL, SET_TIME)
+    assert (await now())[0] > time
+    await put(node, CONTROL, SET_RATE)
+    await check_rate(1.5)
+    # The host sees the same clock, and can set it, too.
+    requests = [ControlRequest(operation=Operation.READ, argument=5)]
+    requests += [ControlRequest(operation=Operation.SET_RATE, argument=10 << NS)]
+    await send(*(each.encode() for each in requests), topic=0)
+    receiver = MessageReceiver()
+    frames = [bytes(sink.recv_nowait().tdata) for _ in range(sink.count())]
+    came = [message for message in map(receiver.take, frames) if message]
+    answers = [ControlResponse.decode(each.packet) for each in came if each.topic == 0]
+    assert [each.value for each in answers] == [15 << NS, 0]
+    assert [each.packet for each in came if each.topic == 2] == [good] * 4
+    assert await word(node, AT["rate"]) == 10 << NS
+    # A reset answers what was asked before, and takes nothing before it is over.
+    reads = [cocotb.start_soon(word(node, ID)) for _ in range(6)]
+    writes = [cocotb.start_soon(put(node, CONTROL, RESET))]
+    writes += [cocotb.start_soon(put(node, ENABLE, number % 4)) for number in range(6)]
+    await with_timeout(Combine(*reads, *writes), 100, "us")
+    assert await word(node, ENABLE) == 1
+    assert await latched(*names) == [0] * 6
+    assert (await now())[0] < get_sim_time("ns") - first
+    assert await word(node, AT["new_sec"]) == 0
+    assert await word(node, AT["rate"]) == 10 << NS
+    sender = MessageSender()
+    await send(good)
+    assert (await latched(*names))[:4] == [1, 0, 1, 5]
 
 
 @cocotb.test()
 async def messages_are_sent(dut):
-    _, tx, _, sink = await begin(dut)
+    ends = await begin(dut)
+    tx, sink = ends["tx"], ends["tx_m_axis"]
     chosen, sent = random.Random(2), []
     await put(tx, ENABLE, 1)
     for _ in range(ROUNDS // 20):
@@ -229,7 +362,8 @@ async def messages_are_sent(dut):
 
 @cocotb.test()
 async def messages_are_shown(dut):
-    rx, _, source, _ = await begin(dut)
+    ends = await begin(dut)
+    rx, source = ends["rx"], ends["rx_s_axis"]
     chosen = random.Random(3)
 
     async def send(data):

@@ -1,7 +1,8 @@
-"""Converters with registers as Verilog, in Icarus Verilog with cocotbext-axi's master."""
+"""Converters and a node with registers, in Icarus Verilog with cocotbext-axi's master."""
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -14,6 +15,8 @@ import pytest
 from firm_hdl.export.backend import Converters
 from firm_hdl.export.registers import register_circuits, register_maps, write
 from firm_hdl.frontend import Library
+from firm_hdl.node import read_description
+from firm_hdl.node.build import build_node
 from firm_hdl.plan import build_plan
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
@@ -30,6 +33,18 @@ float32[2] f
 int64 g
 """
 
+NODE = """\
+node: mirror
+distro: jazzy
+bus_bytes: 4
+registers: axi4lite
+accelerator: firm_hdl.node.loop:Loop
+subscribe:
+  came: {type: std_msgs/msg/UInt8}
+publish:
+  goes: {type: std_msgs/msg/UInt8}
+"""
+
 RUN = """\
 import sys
 from cocotb_tools.runner import get_results, get_runner
@@ -44,7 +59,7 @@ print(f"{tests} tests, {failed} failed")
 
 
 def bench_of(sections) -> str:
-    """Write a module with both converters, and their ports behind a prefix."""
+    """Write a module with all designs, and their ports behind a prefix."""
     outer, inner = ["input aclk", "input aresetn"], []
     for side, section in sections.items():
         ports = [port for port in section["ports"] if port["name"] not in ("aclk", "aresetn")]
@@ -78,6 +93,11 @@ def test_registers_behave_under_random_transfers(tmp_path):
     sections = {side: output.manifest["registers"][each] for side, each in way.items()}
     work = tmp_path / "work"
     work.mkdir()
+    (tmp_path / "mirror.yaml").write_text(NODE)
+    node = build_node(read_description(tmp_path / "mirror.yaml"), tmp_path)
+    manifest = json.loads((node.folder / "manifest.json").read_text())
+    sections["node"] = {**manifest, "module": "mirror_verilog", "verilog": "mirror_verilog.v"}
+    output.files["mirror_verilog.v"] = (node.folder / "mirror_verilog.v").read_text()
     (work / "bench.v").write_text(bench_of(sections))
     for each in sections.values():
         (work / each["verilog"]).write_text(output.files[each["verilog"]])
@@ -95,10 +115,11 @@ def test_registers_behave_under_random_transfers(tmp_path):
             "ROUNDS": str(by_depth(100, 100_000)),
             "DEFINITION": str(definition),
             "FINGERPRINT": str(high << 32 | low),
+            "NODE": json.dumps(manifest["bus_registers"]["registers"]),
         },
         capture_output=True,
         text=True,
         timeout=3000,
         check=False,
     )
-    assert "3 tests, 0 failed" in done.stdout, done.stdout + done.stderr
+    assert "5 tests, 0 failed" in done.stdout, done.stdout + done.stderr

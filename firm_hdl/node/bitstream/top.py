@@ -94,6 +94,9 @@ def board_top(
         problems.append(Diagnostic(message=message, span=span))
 
     pll = _pll(description, board, problem)
+    if description.registers:
+        what = f"{board.name} has no processor for the registers; the top level is yours to write"
+        problem(description.registers_span, what)
     found = _link(description, ports, board, problem)
     constants = list(board.constants)
     is_rgmii = any(port.name.startswith("rgmii_") for port in found)

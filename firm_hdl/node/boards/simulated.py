@@ -89,7 +89,8 @@ class SimulatedBoard(Board):
             )
         # The registers are those of the board.
         link = Link(kind="stream", ethernet=description.link.ethernet)
-        self._description = replace(description, link=link)
+        # Nobody is there to use a bus of the chip.
+        self._description = replace(description, link=link, registers="")
         self._engine, self._report = engine, report
         self._wave = wave
         if wave is not None:

@@ -38,6 +38,8 @@ class BoardSide:
         Takes a line of text for people.
     on_lost : callable
         Called when the board is gone or has started again: it answers no request of before.
+    clock : callable
+        Returns the time that the node is to have, in ns since the epoch.
 
     Attributes
     ----------
@@ -56,7 +58,9 @@ class BoardSide:
         counters: BridgeCounters,
         report: Callable[[str], None],
         on_lost: Callable[[], None],
+        clock: Callable[[], int] = time.time_ns,
     ) -> None:
+        self._clock = clock
         self._description, self._board, self._counters = description, board, counters
         self._report, self._on_lost = report, on_lost
         self.session: Session | None = None
@@ -121,7 +125,7 @@ class BoardSide:
             assert self.session is not None
             if self._board.is_unreachable:
                 self.session.hurry(now)
-            frames = self.session.due(time.monotonic(), time.time_ns())
+            frames = self.session.due(time.monotonic(), self._clock())
             if frames:
                 self._board.send(frames)
         except (BoardError, SilentBoardError) as error:
@@ -234,7 +238,7 @@ class BoardSide:
             return []
         was_ready, restarts = session.is_ready, session.restarts
         now = time.monotonic()
-        messages = session.take(frame, now, time.time_ns())
+        messages = session.take(frame, now, self._clock())
         if session.restarts > restarts:
             self._drop_unconfirmed(session, "board lost")
             self._on_lost()

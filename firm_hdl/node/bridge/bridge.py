@@ -57,6 +57,8 @@ class Bridge:
         `silent_seconds`, so that the bridge ends with it.
     report : callable or None
         Takes a line of text for people when something happens, such as a board that is gone.
+    clock : callable
+        Returns the time that the node is to have, in ns since the epoch.
 
     Attributes
     ----------
@@ -74,11 +76,14 @@ class Bridge:
         graph: Graph,
         *,
         report: Callable[[str], None] | None = None,
+        clock: Callable[[], int] = time.time_ns,
     ) -> None:
         self.description, self.board, self.graph = description, board, graph
         self.counters = BridgeCounters()
         self._report = report or (lambda _: None)
-        self.side = BoardSide(description, board, self.counters, self._report, self._end_calls)
+        self.side = BoardSide(
+            description, board, self.counters, self._report, self._end_calls, clock
+        )
         self._topics = {topic.id: topic for topic in description.topics}
         self._most_bytes = {
             topic.id: most_bytes(description, "in", store)

@@ -20,6 +20,7 @@ from firm_hdl.node.capacity import rate_problems
 from firm_hdl.node.control import ETHERNET_COUNTERS, Register
 from firm_hdl.node.description import Description
 from firm_hdl.node.graphs import graph_of
+from firm_hdl.node.timekeeping import ptp_clock
 from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ def run_bridge(
     engine: EngineName = "auto",
     quiet: bool = False,
     wave: Path | None = None,
+    phc: str | None = None,
 ) -> None:
     """Run a bridge until Ctrl-C (SIGINT) or SIGTERM; print to standard error.
 
@@ -59,13 +61,16 @@ def run_bridge(
         Print no figures, only what happens.
     wave : Path or None
         Of a simulated board; see :class:`.SimulatedBoard`.
+    phc : str or None
+        The PTP hardware clock that the node follows, rather than the clock of the system.
 
     Raises
     ------
     UserError, DefinitionError
-        If board or graph cannot be used, if the board has another description, or if it has not
-        answered in `seconds`, or until the graph has ended.
+        If board, graph or clock cannot be used, if the board has another description, or if it has
+        not answered in `seconds`, or until the graph has ended.
     """
+    clock = time.time_ns if phc is None else ptp_clock(phc)
     joined = graph_of(graph, description, domain=domain, interface=interface)
     status = Status(sys.stderr, quiet=quiet)
     simulation: dict[str, Any] = {"engine": engine}
@@ -81,6 +86,7 @@ def run_bridge(
         way,
         joined,
         report=status.report,
+        clock=clock,
     )
     for line in rate_problems(description):
         status.report(f"warning: {line}")

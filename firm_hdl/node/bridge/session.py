@@ -22,7 +22,7 @@ from firm_hdl.node.control import (
     Operation,
     Register,
     Result,
-    ethernet_counter,
+    is_loss,
     nominal_rate,
     registers,
 )
@@ -48,13 +48,6 @@ _SETTLED = 0x8100
 """The number of the first message that does not say that a sequence begins; those that do have 0.
 If one of these comes again later, the others seem to be behind, so that the board counts no gap. It
 believes such a number when the next one follows, so two requests are sent."""
-
-_NO_LOSSES = (
-    *("passed", "bytes_low", "bytes_high", "control", "control_full", "unsent"),
-    ethernet_counter("other"),
-)
-"""Counters that do not count losses: a request of control without room was repeated; before a host
-has spoken, all that a node sends is unsent; and a network has frames for others."""
 
 
 class WrongBoardError(Exception):
@@ -249,7 +242,7 @@ class Session:
         and the counters are final. The answer to the first of them confirms all messages.
         """
         self._is_finishing = True
-        losses = [each.number for each in self._counters if _is_loss(each)]
+        losses = [each.number for each in self._counters if is_loss(each)]
         losses.remove(self._lost_register)
         self.read([0, *losses, self._lost_register, self._requests_register], now)
 
@@ -451,13 +444,9 @@ class Session:
         return [
             (each, found[each.number])
             for each in self._counters
-            if _is_loss(each) and found[each.number] > 0
+            if is_loss(each) and found[each.number] > 0
         ]
 
 
 def _read(number: int) -> ControlRequest:
     return ControlRequest(operation=Operation.READ, argument=number)
-
-
-def _is_loss(register: Register) -> bool:
-    return register.name not in _NO_LOSSES

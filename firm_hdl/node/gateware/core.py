@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from amaranth.hdl import Array, Cat, Const, Module, Signal, Value
-from amaranth.lib import data, wiring
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal, Value
+from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import PacketArbiter, PacketFifo, PacketGate, PacketRouter, PacketSignature
@@ -14,13 +14,12 @@ from firm_hdl.node.control import (
     CONTROL_BYTES,
     COUNTERS_FROM,
     IDENTITY,
-    Register,
+    counter_path,
     link_counters,
     registers,
 )
 from firm_hdl.node.description import (
     CONTROL_TOPIC,
-    SERVICE_PARTS,
     Description,
     Kind,
     Topic,
@@ -28,6 +27,7 @@ from firm_hdl.node.description import (
 from firm_hdl.node.frame import VERSION
 from firm_hdl.node.gateware.clock import NodeClock
 from firm_hdl.node.gateware.control_unit import ByteCounter, ControlUnit, RegisterReader
+from firm_hdl.node.gateware.registers import CoreSideSignature
 from firm_hdl.node.gateware.services import RequestGate, TaggedFifo
 from firm_hdl.node.gateware.streams import (
     LENGTH_BITS,
@@ -36,31 +36,12 @@ from firm_hdl.node.gateware.streams import (
     RequestSignature,
     ResponseSignature,
     link_counters_layout,
+    node_counters_layout,
     passes,
     time_layout,
 )
 
-__all__ = ["NodeCore", "node_counters_layout"]
-
-
-def node_counters_layout(description: Description) -> data.StructLayout:
-    """Return all counters of a node as a structure, with the members of `register_path`."""
-    tree: dict[str, Any] = {}
-    for each in registers(description)[len(IDENTITY) :]:
-        owner, name = _path(description, each)
-        tree.setdefault(owner, {})[name] = 32
-    return data.StructLayout({owner: data.StructLayout(names) for owner, names in tree.items()})
-
-
-def _path(description: Description, register: Register) -> tuple[str, str]:
-    """Return where the structure of counters has a register."""
-    if not register.topic:
-        return register.part, register.name
-    topic = description.topics[register.topic - 1]
-    part: str = topic.kind
-    if topic.kind == "serve":
-        part = SERVICE_PARTS["in" if register.part == "in" else "out"]
-    return f"{part}_{topic.port}", register.name
+__all__ = ["NodeCore"]
 
 
 class NodeCore(wiring.Component):
@@ -96,6 +77,8 @@ class NodeCore(wiring.Component):
     link_counters : In(link_counters_layout(description.link))
         Counters of the link, for the host to read.
     counters : Out(node_counters_layout(description))
+    registers : Out(CoreSideSignature())
+        Only if the node has registers.
     """
 
     def __init__(self, description: Description):
@@ -123,6 +106,7 @@ class NodeCore(wiring.Component):
                 "time": Out(time_layout()),
                 "link_counters": In(link_counters_layout(description.link)),
                 "counters": Out(node_counters_layout(description)),
+                **({"registers": Out(CoreSideSignature())} if description.registers else {}),
             }
         )
 
@@ -133,23 +117,37 @@ class NodeCore(wiring.Component):
         self._inputs: dict[int, Any] = {}
         self._outputs: dict[int, Any] = {}
         self._events: dict[tuple[str, str], Value] = {}
+        # High while a message leaves its gate or its FIFO.
+        self._leaves: list[Value] = []
         m.submodules.clock = clock = NodeClock(self.description.clock_hz)
         count = len(registers(self.description)) - len(IDENTITY)
         m.submodules.control = control = ControlUnit(bus, len(IDENTITY), COUNTERS_FROM, count)
         m.d.comb += [
             self.time.eq(clock.time),
             control.time.eq(clock.time),
-            clock.to.eq(control.to),
-            clock.sets.eq(control.sets),
-            clock.to_rate.eq(control.to_rate),
-            clock.sets_rate.eq(control.sets_rate),
         ]
+        self._set_clock(m, control, clock)
         for topic in self.description.topics:
             getattr(self, f"_{topic.kind}")(m, topic)
         self._route(m, control)
         self._collect(m, control)
         self._count(m, control, clock)
+        if self.description.registers:
+            m.d.comb += self.registers.rate.eq(clock.rate)
+            m.d.sync += self.registers.moves.eq(Cat(self._leaves).any())
         return m
+
+    def _set_clock(self, m: Module, control: ControlUnit, clock: NodeClock) -> None:
+        """Let the host set the clock, and the registers, which come first."""
+        for sets, value in (("sets", "to"), ("sets_rate", "to_rate")):
+            asked, new = getattr(control, sets), Value.cast(getattr(control, value))
+            if self.description.registers:
+                own = getattr(self.registers, sets)
+                asked, new = asked | own, Mux(own, getattr(self.registers, value), new)
+            m.d.comb += [
+                getattr(clock, sets).eq(asked),
+                Value.cast(getattr(clock, value)).eq(new),
+            ]
 
     def _subscribe(self, m: Module, topic: Topic) -> None:
         store = topic.store("in")
@@ -204,6 +202,7 @@ class NodeCore(wiring.Component):
     def _counted(self, m: Module, owner: str, part: Any, out: Any) -> None:
         """Note the counters of a gate or a FIFO, and count the bytes of what leaves it."""
         m.submodules[f"bytes_{owner}"] = total = ByteCounter(len(part.size))
+        self._leaves.append(total.adds)
         m.d.comb += [
             total.adds.eq(out.valid & out.ready & out.payload.last),
             total.size.eq(part.size),
@@ -281,7 +280,7 @@ class NodeCore(wiring.Component):
         m.submodules.reader = reader = RegisterReader(len(registers(self.description)))
         values = list(self._identity(clock))
         for each in registers(self.description)[len(IDENTITY) :]:
-            owner, name = _path(self.description, each)
+            owner, name = counter_path(self.description, each)
             m.d.comb += self.counters[owner][name].eq(self._events[owner, name])
             values.append(self.counters[owner][name])
         m.d.comb += [

@@ -9,8 +9,8 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.gateware import PacketSignature
 from firm_hdl.gateware.signatures import packet_layout
-from firm_hdl.node.control import LINK_COUNTERS, link_counters
-from firm_hdl.node.description import Link
+from firm_hdl.node.control import IDENTITY, LINK_COUNTERS, counter_path, link_counters, registers
+from firm_hdl.node.description import Description, Link
 from firm_hdl.node.frame import HEADER
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "link_counters_layout",
     "link_layout",
     "link_members",
+    "node_counters_layout",
     "passes",
     "time_layout",
 ]
@@ -85,6 +86,15 @@ def link_counters_layout(link: Link | None = None) -> data.StructLayout:
     Without `link`, they are those that every link has.
     """
     return data.StructLayout(dict.fromkeys(link_counters(link) if link else LINK_COUNTERS, 32))
+
+
+def node_counters_layout(description: Description) -> data.StructLayout:
+    """Return all counters of a node as a structure, with the members of `counter_path`."""
+    tree: dict[str, Any] = {}
+    for each in registers(description)[len(IDENTITY) :]:
+        owner, name = counter_path(description, each)
+        tree.setdefault(owner, {})[name] = 32
+    return data.StructLayout({owner: data.StructLayout(names) for owner, names in tree.items()})
 
 
 def link_members(bus_bytes: int, link: Link | None = None) -> dict[str, Any]:
