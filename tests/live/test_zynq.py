@@ -10,7 +10,7 @@ from firm_hdl.node import read_description
 from tests.live.bridges import BridgeProcess
 from tests.live.peer import Peer, python_of
 from tests.live.trips import CLOUD, IMU, check_trips, named
-from tests.node.boards.chip import Chip, SimulatedStreams
+from tests.node.boards.chip import ServedChip, SimulatedStreams
 from tests.node.boards.dma_model import DEC_ERR, INT_ERR, SLV_ERR
 
 pytestmark = pytest.mark.live
@@ -49,7 +49,7 @@ def node(tmp_path_factory):
 @pytest.fixture(scope="module")
 def chip(node):
     streams = SimulatedStreams(read_description(node), engine="verilator", options=["-O1"])
-    with Chip(node.parent, streams) as made:
+    with ServedChip(node.parent, streams) as made:
         yield made
 
 

@@ -11,6 +11,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
@@ -53,10 +54,20 @@ inline std::uint64_t number_of(const std::string &path, int base) {
   return std::strtoull(text_of(path).c_str(), nullptr, base);
 }
 
+// Memory and registers are accessed in the order of the program, also where caches are coherent.
+inline void barrier() {
+#if defined(__aarch64__) || defined(__arm__)
+  __asm__ volatile("dsb sy" ::: "memory");
+#else
+  std::atomic_thread_fence(std::memory_order_seq_cst);
+#endif
+}
+
 // A device, which nobody else can open, and its memory.
 class Mapped {
  public:
-  Mapped(const std::string &path, std::size_t bytes, int flags) : size(bytes) {
+  Mapped(const std::string &path, std::uint64_t bytes, int flags)
+      : size(static_cast<std::size_t>(bytes)) {
     file = open(path.c_str(), O_RDWR | flags);
     if (file < 0) throw Error("cannot open '" + path + "': " + std::strerror(errno));
     std::string why = "'" + path + "' is used by another program";
@@ -362,6 +373,7 @@ class Zynq {
       if (registers_.read(at + kAddress + 4) != high)
         throw Error("the DMA has too few bits for the address of the buffer");
     }
+    detail::barrier();
     registers_.write(at + kLength, size);
   }
   void receive_into(unsigned part) {
@@ -381,8 +393,10 @@ class Zynq {
             why += (each ? " S2MM" : " MM2S") + std::string(names[bit]);
       throw Error(why);
     }
-    if (status & kIoc) registers_.write(at + kStatus, kIoc);
-    return status & kIoc;
+    if (!(status & kIoc)) return false;
+    registers_.write(at + kStatus, kIoc);
+    detail::barrier();
+    return true;
   }
   // Take a frame that has come, after the DMA got the other part; return whether there was one.
   bool pump() {

@@ -29,7 +29,7 @@ from tests.node.boards.remote import (
     open_devices,
 )
 
-__all__ = ["Chip", "SimulatedStreams"]
+__all__ = ["Chip", "ServedChip", "SimulatedStreams"]
 
 
 class DmaStreams(wiring.Component):
@@ -134,30 +134,84 @@ class SimulatedStreams(Streams):
 
 
 class Chip:
-    """A context manager, whose thread answers :mod:`tests.node.boards.remote`.
+    """A DMA and the memory that it shares with a processor, without coherent caches.
+
+    Parameters
+    ----------
+    streams : Streams
+    seen : memoryview
+        The memory as the processor sees it.
+    bits : int
+        Width of the length register in the device tree; 0 if it has none.
+    parameters
+        Of an :class:`.AxiDma`.
+
+    Attributes
+    ----------
+    interrupts : socket or None
+        Gets each interrupt.
+    """
+
+    def __init__(self, streams, seen, *, address=ADDRESS, bits=14, **parameters):
+        self.streams, self.seen, self.address, self.bits = streams, seen, address, bits
+        self.memory = memoryview(bytearray(len(seen)))
+        self.dma = AxiDma(self.memory, address, streams, **{"length_bits": bits or 14} | parameters)
+        self.is_enabled = False
+        self.interrupts = None
+
+    def call(self, op, a=0, b=0):
+        """Do an order of the processor; return the answer."""
+        self._step()
+        value = 0
+        match op:
+            case b"r":
+                value = self.dma.read(a)
+            case b"w":
+                self.dma.write(a, b)
+            case b"e":
+                self.is_enabled = True
+            case b"p":
+                value = self.bits
+            case b"d" | b"D" | b"c":
+                assert a % 64 == b % 64 == 0
+                # What the processor has written is in its caches until it hands it over.
+                if op == b"d":
+                    self.memory[a : a + b] = self.seen[a : a + b]
+                elif op == b"c":
+                    self.seen[a : a + b] = self.memory[a : a + b]
+        self._step()
+        return value
+
+    def _step(self):
+        self.dma.packets += self.streams.receive()
+        self.dma.step()
+        if self.is_enabled and self.dma.interrupt and self.interrupts:
+            # UIO disables the interrupt until it is enabled again.
+            self.is_enabled = False
+            self.interrupts.send(VALUE.pack(1))
+
+    def close(self):
+        """Be left by the processor."""
+        self.is_enabled = False
+        if self.interrupts:
+            self.interrupts.close()
+        self.interrupts = None
+
+
+class ServedChip(Chip):
+    """A chip whose thread answers :mod:`tests.node.boards.remote`; a context manager.
 
     Parameters
     ----------
     folder : Path
         Where its files are.
-    streams : Streams
-    size : int
-        Bytes of the memory.
-    bits : int
-        Width of the length register in the device tree; 0 if it has none.
-    parameters
-        Of an :class:`.AxiDma`.
     """
 
-    def __init__(self, folder, streams, *, size=1 << 18, bits=14, **parameters):
-        self.folder, self.streams, self.bits = Path(folder), streams, bits
+    def __init__(self, folder, streams, *, size=1 << 18, **parameters):
+        self.folder = Path(folder)
         (self.folder / MEMORY).write_bytes(bytes(size))
         with (self.folder / MEMORY).open("r+b") as file:
-            self.seen = memoryview(mmap.mmap(file.fileno(), size))
-        self.memory = memoryview(bytearray(size))
-        self.dma = AxiDma(self.memory, ADDRESS, streams, **{"length_bits": bits or 14} | parameters)
-        self.is_enabled = False
-        self.interrupts = None
+            super().__init__(streams, memoryview(mmap.mmap(file.fileno(), size)), **parameters)
         self.failure = None
         self._ends, self._end = socket.socketpair()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -215,38 +269,10 @@ class Chip:
             selector.unregister(wire)
             wire.close()
             if wire is self.interrupts:
-                self.interrupts, self.is_enabled = None, False
+                self.close()
             return
         op, a, b = CALL.unpack(call)
-        value = self._do(op, a, b)
+        value = self.call(op, a, b)
         if op == b"i":
             self.interrupts = wire
         wire.send(VALUE.pack(value))
-
-    def _do(self, op, a, b):
-        self._step()
-        if op == b"r":
-            return self.dma.read(a)
-        if op == b"w":
-            self.dma.write(a, b)
-        elif op == b"e":
-            self.is_enabled = True
-        elif op == b"p":
-            return self.bits
-        elif op in b"dDc":
-            assert a % 64 == b % 64 == 0
-            # What the processor has written is in its caches until it hands it over.
-            if op == b"d":
-                self.memory[a : a + b] = self.seen[a : a + b]
-            elif op == b"c":
-                self.seen[a : a + b] = self.memory[a : a + b]
-        return 0
-
-    def _step(self):
-        if isinstance(self.streams, SimulatedStreams):
-            self.dma.packets += self.streams.receive()
-        self.dma.step()
-        if self.is_enabled and self.dma.interrupt and self.interrupts:
-            # UIO disables the interrupt until it is enabled again.
-            self.is_enabled = False
-            self.interrupts.send(VALUE.pack(1))

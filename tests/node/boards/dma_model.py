@@ -147,6 +147,10 @@ class Streams:
     def let_packet_come(self) -> None:
         """Let the next packet of S2MM come, for which there is a buffer now."""
 
+    def receive(self) -> list[bytes]:
+        """Return the packets of S2MM that have come."""
+        return []
+
     def reset(self) -> None:
         """Reset, with what is connected."""
 

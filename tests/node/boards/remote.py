@@ -1,4 +1,4 @@
-"""The devices of a :class:`tests.node.boards.chip.Chip`, which runs in another thread or process.
+"""The devices of a :class:`tests.node.boards.chip.Chip`, also of one that runs elsewhere.
 
 They stand for a UIO device and a u-dma-buf, so that the driver is the one of a real board. Orders
 are three numbers: ``op, a, b``, of which each is answered by one.
@@ -12,7 +12,7 @@ import struct
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["ADDRESS", "CALL", "MEMORY", "SOCKET", "VALUE", "open_devices"]
+__all__ = ["ADDRESS", "CALL", "MEMORY", "SOCKET", "VALUE", "Buffer", "Registers", "open_devices"]
 
 SOCKET, MEMORY = "chip", "memory"
 """Files of a chip in its folder."""
@@ -24,7 +24,7 @@ CALL, VALUE = struct.Struct("<cII"), struct.Struct("<I")
 
 
 class Wire:
-    """A connection with a chip."""
+    """A connection with a chip in another thread or process."""
 
     def __init__(self, folder: Path) -> None:
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -34,17 +34,19 @@ class Wire:
         self.socket.send(CALL.pack(op, a, b))
         return VALUE.unpack(self.socket.recv(VALUE.size))[0]
 
+    def close(self) -> None:
+        self.socket.close()
 
-class RemoteRegisters:
-    """Registers of the DMA; `fileno` is readable after an interrupt."""
 
-    def __init__(self, folder: Path) -> None:
-        self.wire, self.interrupts = Wire(folder), Wire(folder)
-        self.interrupts.call(b"i")
-        self.interrupts.socket.setblocking(False)
+class Registers:
+    """Registers of the DMA, and a socket that can be read after an interrupt."""
+
+    def __init__(self, wire: Wire, interrupts: socket.socket) -> None:
+        self.wire, self.interrupts = wire, interrupts
+        interrupts.setblocking(False)
 
     def fileno(self) -> int:
-        return self.interrupts.socket.fileno()
+        return self.interrupts.fileno()
 
     def read(self, offset: int) -> int:
         return self.wire.call(b"r", offset)
@@ -54,7 +56,7 @@ class RemoteRegisters:
 
     def take_interrupt(self) -> None:
         with suppress(BlockingIOError):
-            self.interrupts.socket.recv(VALUE.size)
+            self.interrupts.recv(VALUE.size)
 
     def enable_interrupt(self) -> None:
         self.wire.call(b"e")
@@ -64,21 +66,17 @@ class RemoteRegisters:
         return self.wire.call(b"p") or None
 
     def close(self) -> None:
-        self.wire.socket.close()
-        self.interrupts.socket.close()
+        self.wire.close()
+        self.interrupts.close()
 
 
-class RemoteBuffer:
-    """Memory that the DMA has, too, behind caches that are not coherent."""
+class Buffer:
+    """Memory that the DMA has, too, behind caches that are not coherent: `data` is in them."""
 
-    name, address = "udmabuf0", ADDRESS
+    name = "udmabuf0"
 
-    def __init__(self, folder: Path) -> None:
-        self.wire = Wire(folder)
-        self.size = (folder / MEMORY).stat().st_size
-        with (folder / MEMORY).open("r+b") as file:
-            self._map = mmap.mmap(file.fileno(), self.size)
-        self.data = memoryview(self._map)
+    def __init__(self, wire: Wire, data: memoryview, address: int = ADDRESS) -> None:
+        self.wire, self.data, self.address, self.size = wire, data, address, len(data)
 
     def to_device(self, offset: int, size: int, *, is_written: bool) -> None:
         self.wire.call(b"D" if is_written else b"d", offset, size)
@@ -87,11 +85,13 @@ class RemoteBuffer:
         self.wire.call(b"c", offset, size)
 
     def close(self) -> None:
-        self.wire.socket.close()
-        self.data.release()
-        self._map.close()
+        self.wire.close()
 
 
-def open_devices(folder: Path) -> tuple[RemoteRegisters, RemoteBuffer]:
+def open_devices(folder: Path) -> tuple[Registers, Buffer]:
     """Return registers and buffer of the chip in a folder."""
-    return RemoteRegisters(folder), RemoteBuffer(folder)
+    interrupts = Wire(folder)
+    interrupts.call(b"i")
+    with (folder / MEMORY).open("r+b") as file:
+        data = memoryview(mmap.mmap(file.fileno(), 0))
+    return Registers(Wire(folder), interrupts.socket), Buffer(Wire(folder), data)

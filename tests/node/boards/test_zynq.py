@@ -6,7 +6,6 @@ import errno
 import os
 import re
 import socket
-from contextlib import suppress
 
 import pytest
 
@@ -14,8 +13,9 @@ from firm_hdl.node.boards import BoardError
 from firm_hdl.node.boards.devices import DmaBuffer, Uio
 from firm_hdl.node.boards.zynq import ZynqBoard
 from tests.node.accelerators import echo_text
-from tests.node.boards.dma_model import DEC_ERR, INT_ERR, SLV_ERR, AxiDma, Streams
-from tests.node.boards.remote import ADDRESS
+from tests.node.boards.chip import Chip
+from tests.node.boards.dma_model import DEC_ERR, INT_ERR, SLV_ERR, Streams
+from tests.node.boards.remote import ADDRESS, Buffer, Registers
 from tests.node.bridge.fakes import FakeGraph, FakeNode, bridge_of, run_until
 from tests.node.samples import read
 
@@ -24,80 +24,12 @@ MEMORY = read(echo_text(link=f"{{kind: axi_dma, buffer_bytes: {BUFFER_BYTES}}}")
 HEARD = MEMORY.topics[0]
 
 
-class ModelRegisters:
-    """The registers of a modelled DMA, and its interrupt: a file as UIO has it."""
+class LocalChip(Chip):
+    """A chip that runs with each access to it; `node` takes frames and returns others."""
 
-    def __init__(self, dma, bits=14):
-        self.dma, self.bits = dma, bits
-        self.own, self.other = socket.socketpair()
-        for each in (self.own, self.other):
-            each.setblocking(False)
-        self.is_enabled = False
-
-    def fileno(self):
-        return self.own.fileno()
-
-    def _run(self):
-        self.dma.step()
-        if self.is_enabled and self.dma.interrupt:
-            # UIO disables the interrupt until it is enabled again.
-            self.is_enabled = False
-            self.other.send(bytes(4))
-
-    def read(self, offset):
-        self._run()
-        return self.dma.read(offset)
-
-    def write(self, offset, value):
-        self.dma.write(offset, value)
-        self._run()
-
-    def take_interrupt(self):
-        with suppress(BlockingIOError):
-            self.own.recv(4)
-
-    def enable_interrupt(self):
-        self.is_enabled = True
-        self._run()
-
-    def tree_value(self, name):
-        return {"xlnx,sg-length-width": self.bits}.get(name)
-
-    def close(self):
-        self.own.close()
-        self.other.close()
-
-
-class CachedBuffer:
-    """A buffer whose caches are not coherent: `data` is what the processor sees."""
-
-    name = "udmabuf0"
-
-    def __init__(self, size=4096, address=ADDRESS):
-        self.address, self.size = address, size
-        self.memory, self.data = (memoryview(bytearray(size)) for _ in range(2))
-
-    def to_device(self, offset, size, *, is_written):
-        assert offset % 64 == size % 64 == 0
-        part = slice(offset, offset + size)
-        if not is_written:
-            self.memory[part] = self.data[part]
-
-    def to_processor(self, offset, size):
-        assert offset % 64 == size % 64 == 0
-        self.data[offset : offset + size] = self.memory[offset : offset + size]
-
-    def close(self):
-        pass
-
-
-class Chip:
-    """A DMA and a buffer, whose devices a board opens; `node` takes frames and returns others."""
-
-    def __init__(self, node=None, bits=14, size=4096, address=ADDRESS, **parameters):
+    def __init__(self, node=None, size=4096, **parameters):
         self.node = node or FakeNode(MEMORY.fingerprint)
-        self.bits, self.buffer = bits, CachedBuffer(size, address)
-        self.dma = AxiDma(self.buffer.memory, address, Streams(self.take), **parameters)
+        super().__init__(Streams(self.take), memoryview(bytearray(size)), **parameters)
         self.opened = []
 
     def take(self, frame):
@@ -105,7 +37,8 @@ class Chip:
 
     def open(self, uio, buffer):
         self.opened.append((uio, buffer))
-        return ModelRegisters(self.dma, self.bits), self.buffer
+        own, self.interrupts = socket.socketpair()
+        return Registers(self, own), Buffer(self, self.seen, self.address)
 
     def board(self):
         name = "zynq://uio0/udmabuf0"
@@ -114,7 +47,7 @@ class Chip:
 
 @pytest.fixture
 def chip():
-    return Chip()
+    return LocalChip()
 
 
 def bridged(chip):
@@ -210,7 +143,7 @@ def test_a_node_that_sends_all_the_time_holds_up_nothing(chip):
 )
 def test_a_dma_that_does_not_fit_is_an_error(parameters, text):
     with pytest.raises(BoardError, match=re.escape(text)):
-        Chip(**parameters).board().open()
+        LocalChip(**parameters).board().open()
 
 
 def test_a_dma_without_a_clock_is_an_error(chip):

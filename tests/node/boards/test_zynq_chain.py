@@ -8,7 +8,7 @@ from itertools import product
 
 import pytest
 
-from tests.node.boards.chip import Chip, SimulatedStreams
+from tests.node.boards.chip import ServedChip, SimulatedStreams
 from tests.node.boards.dma_model import DEC_ERR, INT_ERR, SLV_ERR
 from tests.node.bridge.fakes import FakeGraph, bridge_of, run_until
 from tests.node.samples import read
@@ -43,7 +43,7 @@ publish:
 @contextmanager
 def ready(tmp_path, description, **options):
     """Give a chip, a bridge to it, which is ready, and what it says."""
-    with Chip(tmp_path, SimulatedStreams(description, engine="amaranth"), **options) as chip:
+    with ServedChip(tmp_path, SimulatedStreams(description, engine="amaranth"), **options) as chip:
         board = chip.board(description.link.buffer_bytes)
         # Amaranth's simulator takes its time.
         board.silent_seconds = board.repeat_seconds = 60.0

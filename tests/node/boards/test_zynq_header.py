@@ -10,7 +10,7 @@ import pytest
 
 from firm_hdl.node.boards.zynq_header import zynq_header
 from firm_hdl.node.messages import MessageSender
-from tests.node.boards.chip import Chip
+from tests.node.boards.chip import ServedChip
 from tests.node.boards.dma_model import SLV_ERR, Streams
 from tests.node.boards.test_zynq import BUFFER_BYTES, MEMORY, system
 from tests.node.bridge.fakes import FakeNode
@@ -50,7 +50,7 @@ def test_messages_and_errors_of_the_driver_in_cpp(program, tmp_path):
             case b"long":
                 chip.dma.packets.append(bytes(BUFFER_BYTES + 1))
 
-    with Chip(tmp_path, Streams(take)) as chip:
+    with ServedChip(tmp_path, Streams(take)) as chip:
         said = run(program, "chip", tmp_path)
     assert said == [
         "100 right, 0 lost",
