@@ -7,16 +7,26 @@ more, and all objects when a quarter of them is new. That took almost half of th
 
 from __future__ import annotations
 
+import atexit
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["search_put_off"]
+__all__ = ["search_put_off", "search_rarely"]
+
+MANY_OBJECTS = 500_000
+"""Objects that Python makes before it searches, in a process that ends soon: some 100 MB."""
+
+
+def search_rarely() -> None:
+    """Search seldom from now on, and not at the end: this process ends after its command."""
+    gc.set_threshold(MANY_OBJECTS)
+    atexit.register(gc.freeze)
 
 
 @contextmanager
 def search_put_off() -> Iterator[None]:
-    """Search for cycles once, when the block ends, and only among the objects that are new.
+    """Search for cycles when the block has ended, and at first only among the objects that are new.
 
     Also usable as a decorator. A block inside another one, or in a program that has disabled the
     search, changes nothing. The memory of cycles is free after the block only, so a block should
@@ -29,7 +39,5 @@ def search_put_off() -> Iterator[None]:
     try:
         yield
     finally:
+        # All objects since `disable` are in the youngest generation, which is searched next.
         gc.enable()
-    # All objects since `disable` are in the youngest generation. After an exception, Python
-    # searches later: Amaranth would warn of unfinished circuits before the exception is reported.
-    gc.collect(0)

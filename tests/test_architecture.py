@@ -78,10 +78,7 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(
-        MAY_IMPORT["export"]
-        - {"estimates", "garbage", "metrics", "program", "registers", "rtlil", "timing"}
-    ),
+    *(MAY_IMPORT["export"] - {"estimates", "metrics", "program", "registers", "rtlil", "timing"}),
     *("arguments", "export", "node", "recordings", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {
@@ -93,7 +90,7 @@ MAY_IMPORT["bench"] = {
     *("model", "frontend", "wire", "plan", "gateware", "sim", "export"),
 }
 MAY_IMPORT["cli"] = {
-    *("firm_hdl", "arguments", "errors", "jobs", "terminal"),
+    *("firm_hdl", "arguments", "errors", "garbage", "jobs", "terminal"),
     *("names", "model", "frontend", "plan", "timing", "program", "estimates", "export"),
     *("identity", "metrics", "node", "cases", "verify", "bench"),
 }

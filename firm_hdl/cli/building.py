@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from firm_hdl.arguments import TYPE_HELP, add_jobs, add_json, add_options
 from firm_hdl.cli.types import library_of
 from firm_hdl.export.options import EXTRAS, IPS, LEAF_PORTS, PORTS, Extra, Options
+from firm_hdl.garbage import search_rarely
 from firm_hdl.terminal import stage
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ def _extras(text: str) -> frozenset[Extra]:
 def _build(args: argparse.Namespace) -> None:
     from firm_hdl.frontend import load_all
 
+    search_rarely()
     library = library_of(args)
     # Errors in definitions are reported before Amaranth is imported, which takes time.
     messages = load_all(library, args.types)
