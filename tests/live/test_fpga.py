@@ -23,18 +23,27 @@ NODE = "\n".join(
 
 
 @pytest.fixture(scope="module", autouse=True)
-def board(tmp_path_factory):
-    """Build the node, and start it behind a TAP device; its process ends with the tests."""
+def restart(tmp_path_factory):
+    """Build the node, and start it behind a TAP device; what is returned starts it again."""
     make_tap("tap1", "192.168.51.1/24")
     program = build_board(tmp_path_factory.mktemp("fpga"), "ethernet", "mirror", NODE)
-    process = subprocess.Popen(
-        [program, "tap1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert process.stdout.readline() == "ready\n"
-    yield
-    process.kill()
-    # It would tell of frames that are not valid.
-    assert process.communicate()[1] == ""
+    running = []
+
+    def end():
+        running[-1].kill()
+        # It would tell of frames that are not valid.
+        assert running.pop().communicate()[1] == ""
+
+    def start():
+        if running:
+            end()
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        running.append(subprocess.Popen([program, "tap1"], text=True, **pipes))
+        assert running[-1].stdout.readline() == "ready\n"
+
+    start()
+    yield start
+    end()
 
 
 def test_it_answers_ping():
@@ -57,3 +66,12 @@ def test_messages_come_back_in_order():
 def test_it_answers_calls():
     with Peer("kilted", "call", name="/mode", count=10, timeout=60) as peer:
         assert peer.result(300)["answers"] == [[bool(n & 1), "ok"] for n in range(10)]
+
+
+def test_it_is_found_again_after_a_restart(restart):
+    options = {**test_participant.TEXT, "count": 20, "period": 0.1}
+    with Peer("kilted", "echo", to="/text_back", back="/text_again"):
+        # This peer has known the board before.
+        test_participant.check_trips("kilted", [options], 20)
+        restart()
+        test_participant.check_trips("kilted", [options], 20)

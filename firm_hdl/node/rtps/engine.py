@@ -11,7 +11,7 @@ from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
-from firm_hdl.gateware.memories import BlockMemory
+from firm_hdl.gateware.memories import BlockMemory, LutMemory
 from firm_hdl.node.capacity import largest_bytes
 from firm_hdl.node.description import Description
 from firm_hdl.node.rtps.assembler import LookupSignature
@@ -123,7 +123,7 @@ class Engine(wiring.Component):
     ):
         self.description, self.templates = description, templates
         self.writers, self.readers, self.parts = writers, readers, parts
-        self.serves = any(each.is_service for each in writers)
+        self.serves = any(each.has_tags for each in parts)
         self.memory_bytes = bytes_of(parts)
         self.address_bits = ceil_log2(self.memory_bytes)
         link = description.link
@@ -238,7 +238,8 @@ class Engine(wiring.Component):
         # Which peers there are; which are matched, have acknowledged a sample, have to be told.
         self._live, self._matched, self._due = Signal(peers), Signal(peers), Signal(peers)
         self._answers = Signal(peers)
-        self._left = Array(Signal(7, name=f"left_{n}") for n in range(peers))
+        # Seconds that are left of the lease of each peer.
+        self._leases = LutMemory(m, "leases", 7, 1 << max(1, ceil_log2(peers)))
         self._young = Array(Signal(2, name=f"young_{n}") for n in range(peers))
         self._dying = Array(Signal(2, name=f"dying_{n}") for n in range(peers))
         self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
@@ -257,7 +258,7 @@ class Engine(wiring.Component):
         self._bits, self._bitmap, self._is_final = Signal(32), Signal(32), Signal()
         self._address, self._port = Signal(32), Signal(16)
         self._start_at, self._size = Signal(range(len(self.templates.rom))), Signal(16)
-        self._sample = sample = Signal(sample_layout(address))
+        self._sample = sample = Signal(sample_layout(self.parts))
         # What is sent of it: all, or a fragment; which one is next, and which ones are wanted: a
         # bit for each from the next one on, and one for all behind.
         self._sent_at, self._sent_bytes = sample.at, sample.bytes
@@ -277,6 +278,8 @@ class Engine(wiring.Component):
             self._rows.read_at.eq(self._at),
             self._peers.write_at.eq(self._peer),
             self._peers.read_at.eq(self._at),
+            self._leases.write.addr.eq(self._peer),
+            self._leases.write.data.eq(self._peer_row.lease),
         ]
         self._fill_order(m)
         event, assembly = self.events.payload, self.assembly
@@ -403,18 +406,27 @@ class Engine(wiring.Component):
 
     def _announcements(self, m: Module) -> None:
         with m.State("SECOND"):
-            m.d.sync += [
-                self._second_due.eq(0),
-                self._multicast_due.eq(1),
-                self._static.eq(self._most_static),
-                self._due.eq(self._live),
+            # The leases of all peers, one per cycle.
+            left, write = self._leases.reader(), self._leases.write
+            peer = self._at[: len(self._peer)]
+            m.d.comb += [
+                left.addr.eq(peer),
+                write.addr.eq(peer),
+                write.data.eq(left.data - 1),
+                write.en.eq(1),
             ]
-            for each in range(self.peers):
-                left, young = self._left[each], self._young[each]
-                m.d.sync += [left.eq(left - 1), young.eq(Mux(young == 0, 0, young - 1))]
-                with m.If(self._live[each] & (left == 0)):
-                    self._kill(m, Const(each, range(self.peers)))
-            m.next = "IDLE"
+            m.d.sync += self._at.eq(self._at + 1)
+            with m.If(self._at == self.peers - 1):
+                m.d.sync += [
+                    self._second_due.eq(0),
+                    self._multicast_due.eq(1),
+                    self._static.eq(self._most_static),
+                    self._due.eq(self._live),
+                    *(young.eq(Mux(young == 0, 0, young - 1)) for young in self._young),
+                ]
+                m.next = "IDLE"
+            with m.If(self._live.bit_select(peer, 1) & (left.data == 0)):
+                self._kill(m, peer)
         domain = self.description.link.domain
         ports = [Ports.of(domain, each).discovery for each in range(_STATIC_PARTICIPANTS)]
         with m.State("ANNOUNCE"):
@@ -526,7 +538,7 @@ class Engine(wiring.Component):
             with m.If(self._has_row & (is_same | (peer == self.peers - 1))):
                 m.d.sync += self._known.eq(is_same)
                 with m.If(is_same):
-                    m.d.sync += self._left[peer].eq(peer_row.lease)
+                    m.d.comb += self._leases.write.en.eq(1)
                 m.next = "DONE"
             with m.Else():
                 m.d.sync += [
@@ -559,7 +571,10 @@ class Engine(wiring.Component):
                 word.user.eq(Mux(user.port == 0, announced.discovery.as_value(), user.as_value())),
                 word.lease.eq(announced.lease),
             ]
-            m.d.sync += self._left[peer].eq(announced.lease)
+            m.d.comb += [
+                self._leases.write.en.eq(1),
+                self._leases.write.data.eq(announced.lease),
+            ]
             m.next = "DONE"
             with m.If(~self._known):
                 m.d.sync += [

@@ -34,12 +34,15 @@ class Part:
         reader gets, if it is not volatile, and so many wait for readers to acknowledge them.
     replays : bool
         Whether there are such late readers.
+    has_tags : bool
+        Whether its samples are replies, each with the tag of a request.
     """
 
     base: int
     bytes: int
     depth: int = 1
     replays: bool = False
+    has_tags: bool = False
 
 
 def bytes_of(parts: tuple[Part, ...]) -> int:
@@ -49,12 +52,16 @@ def bytes_of(parts: tuple[Part, ...]) -> int:
 
 def parts_of(writers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
     """Return the memory of each writer of a topic, as large as that of the topic."""
-    sizes = [each.topic.store("out").memory_bytes for each in writers if each.topic]
-    endless = MOST_SAMPLES + 1
-    policies = [each.data.qos for each in writers if each.topic]
+    users, endless = [each for each in writers if each.topic], MOST_SAMPLES + 1
+    sizes = [each.topic.store("out").memory_bytes for each in users if each.topic]
     return tuple(
-        replace(part, depth=min(qos.depth or endless, endless), replays=bool(qos.durability))
-        for part, qos in zip(_placed(sizes), policies, strict=True)
+        replace(
+            part,
+            depth=min(each.data.qos.depth or endless, endless),
+            replays=bool(each.data.qos.durability),
+            has_tags=each.is_service,
+        )
+        for part, each in zip(_placed(sizes), users, strict=True)
     )
 
 

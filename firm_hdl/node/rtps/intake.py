@@ -38,9 +38,10 @@ def writer_layout(address_bits: int) -> data.StructLayout:
     )
 
 
-def sample_layout(address_bits: int) -> data.StructLayout:
-    """Return a sample of the history: its place, its bytes, and the tag of the request."""
-    return data.StructLayout({"at": address_bits, "bytes": address_bits + 1, "tag": 32})
+def sample_layout(parts: tuple[Part, ...]) -> data.StructLayout:
+    """Return a sample of the history: its place, its bytes, and the tag of the request, if any."""
+    address, tag = ceil_log2(bytes_of(parts)), 32 * any(each.has_tags for each in parts)
+    return data.StructLayout({"at": address, "bytes": address + 1, "tag": tag})
 
 
 def HistoriesSignature(parts: tuple[Part, ...]) -> wiring.Signature:
@@ -84,7 +85,7 @@ def HistoriesSignature(parts: tuple[Part, ...]) -> wiring.Signature:
             "state": In(writer_layout(address)),
             "number": Out(32),
             "fetches": Out(1),
-            "sample": In(sample_layout(address)),
+            "sample": In(sample_layout(parts)),
         }
     )
 

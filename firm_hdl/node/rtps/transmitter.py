@@ -8,9 +8,8 @@ from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
 from amaranth.utils import ceil_log2
 
-from firm_hdl.ethernet.datagrams import DatagramSignature, datagram_layout
+from firm_hdl.ethernet.datagrams import DatagramSignature
 from firm_hdl.gateware.packets.slice import StreamSlice
-from firm_hdl.node.gateware.streams import passes
 from firm_hdl.node.rtps.templates import Op, Templates, fields_layout, op_layout
 
 __all__ = ["Transmitter", "order_layout"]
@@ -93,7 +92,8 @@ class Transmitter(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         order = self.order
-        m.submodules.slice = out = StreamSlice(datagram_layout(1))
+        m.submodules.slice = out = StreamSlice(data.StructLayout({"data": 8, "last": 1}))
+        datagrams, word = self.datagrams, self.datagrams.payload
         m.submodules.rom = rom = Memory(shape=op_layout(), depth=len(self.rom), init=self._init())
         op_port = rom.read_port()
         op = op_port.data
@@ -102,14 +102,18 @@ class Transmitter(wiring.Component):
         moves, is_pad, is_last = Signal(), Signal(), Signal()
         field = Cat(order.fields).word_select(op.value[:7], 8)
         m.d.comb += [
-            *passes(out.o, self.datagrams),
+            datagrams.valid.eq(out.o.valid),
+            out.o.ready.eq(datagrams.ready),
+            word.data.eq(out.o.payload.data),
+            word.last.eq(out.o.payload.last),
+            word.last_be.eq(word.last),
+            word.length.eq(order.size),
+            word.ip_address.eq(order.address),
+            word.src_port.eq(self.port),
+            word.dst_port.eq(order.port),
+            self.ends.eq(datagrams.valid & datagrams.ready & word.last),
             moves.eq(out.i.valid & out.i.ready),
             op_port.addr.eq(at),
-            out.i.payload.length.eq(order.size),
-            out.i.payload.ip_address.eq(order.address),
-            out.i.payload.src_port.eq(self.port),
-            out.i.payload.dst_port.eq(order.port),
-            out.i.payload.last_be.eq(out.i.payload.last),
             is_pad.eq(place >= order.payload_bytes),
             self.read_at.eq(order.base | ((order.at + place) & order.mask)),
         ]
@@ -135,7 +139,6 @@ class Transmitter(wiring.Component):
                 with m.If(moves):
                     m.d.sync += at.eq(at + 1)
                     with m.If(op.last):
-                        m.d.comb += self.ends.eq(1)
                         m.next = "IDLE"
                 with m.If(is_payload):
                     m.d.comb += [op_port.en.eq(1), self.reads.eq(1)]
@@ -158,7 +161,6 @@ class Transmitter(wiring.Component):
                 with m.If(moves):
                     m.d.sync += place.eq(place + 1)
                     with m.If(is_end):
-                        m.d.comb += self.ends.eq(is_last)
                         m.next = "PLAY"
                         with m.If(is_last):
                             m.next = "IDLE"

@@ -95,7 +95,9 @@ def test_discovery_and_samples_both_ways(has_losses):
         yield from wires.until(lambda: said(Heartbeat, writer=user_writer(2)))
         for number, each in enumerate(MESSAGES):
             core.write(writer, each, wires.now, number)
-            wires.to_send.append((2, 0, each))
+        # Nothing else was under way when it came.
+        yield from wires.until(lambda: wires.received)
+        wires.to_send.extend((2, 0, each) for each in MESSAGES)
         yield from wires.until(lambda: len(wires.received) == len(came(reader.guid)) == 3)
         # Fragments that somebody misses, and no others.
         before = len(said(DataFrag, first=2))
