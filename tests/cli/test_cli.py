@@ -264,7 +264,9 @@ def test_services_and_actions_stand_for_all_their_messages(workdir, capsys):
         heads = [line.split(" (CDR")[0] for line in lines if not line.startswith(" ")]
         assert heads.pop().startswith("next: ")
         assert heads == [message.name for message in messages]
-    assert main(["build", "my_msgs/srv/Ask", "my_msgs/srv/Ask_Request", *options]) == 0
+    assert (
+        main(["build", "my_msgs/srv/Ask", "my_msgs/srv/Ask_Request", "--jobs", "1", *options]) == 0
+    )
     folders = sorted(path.name for path in Path("vhdl_out/humble").iterdir())
     assert folders == [f"my_msgs_srv_Ask_{part}_cdr_8" for part in ("Request", "Response")]
     assert main(["build", "my_msgs/srv/Aks", *options]) == 1

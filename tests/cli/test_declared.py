@@ -6,6 +6,7 @@ The table repeats the promises of the documentation by hand. A new option must b
 from __future__ import annotations
 
 import argparse
+from functools import cache
 
 import pytest
 
@@ -103,8 +104,14 @@ DEFAULTS = {
 INTERNAL = ("command", "run", "refuse", "usage_error", "default_of", "version")
 
 
+@cache
+def parser_of(command):
+    """Return the parser, which knows the arguments of one command."""
+    return _parser([command])
+
+
 def parsed(*words):
-    given = vars(_parser(words).parse_args(words))
+    given = vars(parser_of(words[0]).parse_args(words))
     assert callable(given["run"])
     return {
         name: list(value) if isinstance(value, tuple) else value
@@ -115,7 +122,7 @@ def parsed(*words):
 
 def is_refused(*words):
     with pytest.raises(SystemExit) as caught:
-        _parser(words).parse_args(words)
+        parser_of(words[0]).parse_args(words)
     return caught.value.code == 2
 
 

@@ -74,6 +74,7 @@ def run_bench(page_folder: Path, *words: str) -> int:
     return bench.main([*where, *words])
 
 
+@pytest.mark.thorough
 def test_all_parts_of_the_page_are_written(
     page_folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -170,7 +170,8 @@ def test_a_program_is_compiled_once(source, tmp_path, monkeypatch):
     assert "-fast -O2 -std=c++17" in calls.read_text()
     (slow,) = (line for line in calls.read_text().splitlines() if "-c" in line and "Slow" in line)
     assert "-O0" in slow
-    assert told[1:3] == ["Verilator translates it to C++", "compiled 2 of 2 files in 0 s"]
+    assert told[1] == "Verilator translates it to C++"
+    assert told[2].startswith("compiled 2 of 2 files in ")
     assert count(options=["-O1"]) == 3
     version.write_text("2")
     assert count() == 3
