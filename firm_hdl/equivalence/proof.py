@@ -29,13 +29,7 @@ from firm_hdl.equivalence.vhdl_side import read_vhdl
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
-__all__ = [
-    "DEFAULT_TIMEOUT",
-    "Proof",
-    "Result",
-    "prove",
-    "solve",
-]
+__all__ = ["DEFAULT_TIMEOUT", "Proof", "Result", "prove", "solve"]
 
 
 # Equal cells of the two sides are merged before they become gates. These passes may exploit
