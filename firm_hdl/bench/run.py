@@ -24,11 +24,7 @@ from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs import run_each
 from firm_hdl.model import Message
 
-__all__ = [
-    "BenchTask",
-    "measure_once",
-    "run_tasks",
-]
+__all__ = ["BenchTask", "measure_once", "run_tasks"]
 
 
 FORMAT = 1

@@ -9,14 +9,7 @@ from firm_hdl.bench.devices import Device
 from firm_hdl.errors import UserError
 from firm_hdl.jobs import ProgramMissingError, ToolError, made_by, programs, run_tool
 
-__all__ = [
-    "BenchError",
-    "Tool",
-    "find_nextpnr",
-    "find_yosys",
-    "versions",
-    "written",
-]
+__all__ = ["BenchError", "Tool", "find_nextpnr", "find_yosys", "versions", "written"]
 
 TIMEOUT = 3600.0
 """Seconds after which a tool is stopped."""

@@ -18,13 +18,7 @@ import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.typesys.base import normalize_fieldname
 
-from firm_hdl.cases.oracle import (
-    EMPTY_MEMBER,
-    SIZES,
-    FieldType,
-    RosbagsOracle,
-    Transfers,
-)
+from firm_hdl.cases.oracle import EMPTY_MEMBER, SIZES, FieldType, RosbagsOracle, Transfers
 from firm_hdl.cases.values import as_float, is_nan
 from firm_hdl.plan import DecodeStatus
 

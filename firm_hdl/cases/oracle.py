@@ -22,13 +22,7 @@ from rosbags.typesys.store import Typestore
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.wire import Wire
 
-__all__ = [
-    "DISTRO_STORES",
-    "FieldType",
-    "RosbagsOracle",
-    "Transfers",
-    "distro_oracle",
-]
+__all__ = ["DISTRO_STORES", "FieldType", "RosbagsOracle", "Transfers", "distro_oracle"]
 
 DISTRO_STORES = {
     "noetic": Stores.ROS1_NOETIC,

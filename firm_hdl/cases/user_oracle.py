@@ -17,12 +17,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from firm_hdl import model
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.cases.oracle import FieldType, RosbagsOracle, distro_oracle
-from firm_hdl.cases.wide_oracle import (
-    STAND_IN_NOTE,
-    WideOracle,
-    stand_in_type,
-    stand_ins,
-)
+from firm_hdl.cases.wide_oracle import STAND_IN_NOTE, WideOracle, stand_in_type, stand_ins
 from firm_hdl.model import IDL_PRIMITIVES, Message, Primitive, String, closure, element_of
 from firm_hdl.wire import refusals
 

@@ -101,47 +101,19 @@ def converter_vhdl(
     return rtlil, convert(rtlil, name=name)
 
 
-def prove_converter(
-    message: Message,
-    direction: Direction,
-    *,
-    wire: Wire | None = None,
-    bus_bytes: int = 8,
-    max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES,
-    timeout: float = DEFAULT_TIMEOUT,
-) -> Proof:
-    """Prove the VHDL of one converter of a message type.
-
-    * `timeout`: seconds for each solver.
-
-    Raises `BuildError` if the converter cannot be built with these options. Raises `ProofError`: as
-    for `prove`.
-    """
-    rtlil, vhdl = converter_vhdl(
-        message,
-        direction,
-        wire=wire,
-        bus_bytes=bus_bytes,
-        max_message_bytes=max_message_bytes,
-    )
-    return prove(rtlil, vhdl, timeout=timeout)
-
-
 def attempt(task: ProofTask) -> Attempt:
     """Run a task; errors become a result without a proof."""
     try:
         library = open_library(task.distro, task.paths, task.bags, depends=task.depends)
         message = library.message(task.name)
-        return Attempt(
-            proof=prove_converter(
-                message,
-                task.direction,
-                wire=task.wire,
-                bus_bytes=task.bus_bytes,
-                max_message_bytes=task.max_message_bytes,
-                timeout=task.timeout,
-            )
+        rtlil, vhdl = converter_vhdl(
+            message,
+            task.direction,
+            wire=task.wire,
+            bus_bytes=task.bus_bytes,
+            max_message_bytes=task.max_message_bytes,
         )
+        return Attempt(proof=prove(rtlil, vhdl, timeout=task.timeout))
     except (ProofError, UserError, DefinitionError, ValueError) as error:
         return Attempt(proof=None, problem=str(error))
 

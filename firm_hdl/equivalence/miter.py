@@ -9,7 +9,7 @@ the combined circuit ever be 1?
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
@@ -257,12 +257,8 @@ class _Maker:
         return bit
 
     def _renamed(self, cell: Cell) -> Cell:
-        return Cell(
-            kind=cell.kind,
-            parameters=cell.parameters,
-            inputs={port: self._named(bits) for port, bits in cell.inputs.items()},
-            outputs=cell.outputs,
-        )
+        inputs = {port: self._named(bits) for port, bits in cell.inputs.items()}
+        return replace(cell, inputs=inputs)
 
     def _undriven(self, cells: list[Cell], claims: tuple[Claim, ...]) -> Bits:
         """Return the nets that are read and have no driver; they may have any value."""
@@ -312,23 +308,15 @@ def _shifted(circuit: Circuit, offset: int) -> Circuit:
         outputs=each(circuit.outputs),
         signals=each(circuit.signals),
         cells=[
-            Cell(
-                kind=cell.kind,
-                parameters=cell.parameters,
-                inputs=each(cell.inputs),
-                outputs=each(cell.outputs),
-            )
+            replace(cell, inputs=each(cell.inputs), outputs=each(cell.outputs))
             for cell in circuit.cells
         ],
         flops={
-            bit + offset: Flop(
+            bit + offset: replace(
+                flop,
                 data=one(flop.data),
                 clock=one(flop.clock),
-                rising=flop.rising,
-                init=flop.init,
                 reset=None if flop.reset is None else one(flop.reset),
-                reset_level=flop.reset_level,
-                reset_value=flop.reset_value,
             )
             for bit, flop in circuit.flops.items()
         },

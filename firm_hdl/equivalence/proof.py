@@ -14,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
@@ -29,13 +29,7 @@ from firm_hdl.equivalence.vhdl_side import read_vhdl
 from firm_hdl.jobs import ToolError, TooSlowError
 from firm_hdl.vhdl.convert import Vhdl, convert
 
-__all__ = [
-    "DEFAULT_TIMEOUT",
-    "Proof",
-    "Result",
-    "prove",
-    "solve",
-]
+__all__ = ["DEFAULT_TIMEOUT", "Proof", "Result", "prove", "solve"]
 
 
 # Equal cells of the two sides are merged before they become gates. These passes may exploit
@@ -105,14 +99,8 @@ def _left(path: Path, claims: int) -> list[int]:
 
 def _search(miter: Miter, left: list[int], tools: Tools, folder: Path, timeout: float) -> Answer:
     """Let the SAT solver look for a difference in the claims that ABC has left."""
-    rest = Miter(
-        differences=(),
-        claims=tuple(miter.claims[number] for number in left),
-        inputs=miter.inputs,
-        cells=miter.cells,
-        unmatched=miter.unmatched,
-        registers=miter.registers,
-    )
+    # There are no differences, or there would be nothing to solve.
+    rest = replace(miter, claims=tuple(miter.claims[number] for number in left))
     _write(folder / "rest.json", rest, values=True)
     names = tuple(claim.what for claim in rest.claims)
     script = f"{_GATES.format(name='rest')}; tee -q -o sat.txt {_SAT.format(seconds=int(timeout))}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import count
 
 from firm_hdl.equivalence.circuit import Bit, Bits, Cell, Circuit, Flop, ProofError
@@ -72,11 +73,9 @@ class _Flattener:
             signals=self._all_signals(),
             flops=self._all_flops(),
             cells=[
-                Cell(
-                    kind=cell.kind,
-                    parameters=cell.parameters,
+                replace(
+                    cell,
                     inputs={port: self._resolved(bits) for port, bits in cell.inputs.items()},
-                    outputs=cell.outputs,
                 )
                 for cell in self._cells
             ],

@@ -143,7 +143,7 @@ class Metrics:
     # an action.
     definition_bytes: int
     # Why sizes and alignment are `None`: the type has a field without a wire format
-    # (:func:`firm_hdl.wire.refusals`). Empty for all other types.
+    # (`firm_hdl.wire.refusals`). Empty for all other types.
     unsized: str
 
 

@@ -48,7 +48,7 @@ class Recording:
                     raise UnreadableError(f"it has more than {MAX_TOPICS} topics")
                 has_bag = has_bag or isinstance(file, bag.BagFile)
                 self.distro = self.distro or file.distro
-        # The definitions, in the order of the recording.
+        # Definitions are in the order of the recording.
         self.topics, self.schemas = list(topics), list(schemas)
         # Files of MCAP may be of ROS 1, too.
         encodings = {schema.encoding for schema in self.schemas}

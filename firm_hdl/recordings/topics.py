@@ -15,7 +15,7 @@ class Schema:
 
     type: str  # The name of the type.
     encoding: str  # The language, such as `ros2msg`; `ros1msg` in a `.bag`.
-    # The text; `None` if it is longer than :data:`firm_hdl.recordings.limits.MAX_TEXT_BYTES`.
+    # The text; `None` if it is longer than `firm_hdl.recordings.limits.MAX_TEXT_BYTES`.
     data: bytes | None
 
 

@@ -14,13 +14,7 @@ from firm_hdl.sim.harness import Harness, RunResult, leaf_name
 from firm_hdl.sim.loopback import Decoding, Encoding, Loopback, decode, encode, loopback
 from firm_hdl.sim.messages import MessagePort
 from firm_hdl.sim.stalls import StallPlan, Stalls
-from firm_hdl.sim.streams import (
-    receive,
-    receive_packets,
-    receive_statuses,
-    send,
-    send_packets,
-)
+from firm_hdl.sim.streams import receive, receive_packets, receive_statuses, send, send_packets
 from firm_hdl.sim.values import from_transfers, to_transfers
 from firm_hdl.sim.watch import StreamRuleError, StreamRules, watch
 

@@ -27,15 +27,7 @@ from firm_hdl.sim.levels import divided
 from firm_hdl.sim.stalls import StallPlan, check_stalls, stalls_of
 from firm_hdl.sim.watch import StreamRules
 
-__all__ = [
-    "RESET_CYCLES",
-    "Bench",
-    "DeadlineError",
-    "Job",
-    "Ports",
-    "RunOptions",
-    "in_chunks",
-]
+__all__ = ["RESET_CYCLES", "Bench", "DeadlineError", "Job", "Ports", "RunOptions", "in_chunks"]
 
 
 T = TypeVar("T")

@@ -41,12 +41,7 @@ from firm_hdl.sim.transfers import (
 from firm_hdl.sim.watch import PacketRules
 from firm_hdl.wire import lay_out
 
-__all__ = [
-    "Harness",
-    "Recorder",
-    "RunResult",
-    "leaf_name",
-]
+__all__ = ["Harness", "Recorder", "RunResult", "leaf_name"]
 
 
 @dataclass(slots=True, kw_only=True)

@@ -27,13 +27,7 @@ from firm_hdl.sim.payloads import PacketCollector, all_beats, as_packets
 from firm_hdl.sim.stalls import Stalls, check_stalls, stalls_of
 from firm_hdl.sim.watch import PacketRules, check_packet_stream, check_stream
 
-__all__ = [
-    "receive",
-    "receive_packets",
-    "receive_statuses",
-    "send",
-    "send_packets",
-]
+__all__ = ["receive", "receive_packets", "receive_statuses", "send", "send_packets"]
 
 DEADLINE = 1000
 SEND_DEADLINE = 10_000

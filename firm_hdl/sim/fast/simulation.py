@@ -30,11 +30,7 @@ from firm_hdl.sim.fast.top import ClockDomainError, Top
 from firm_hdl.sim.payloads import as_packets
 from firm_hdl.sim.stalls import StallPlan, Stalls, check_stalls, stalls_of
 
-__all__ = [
-    "FastSimulation",
-    "Packet",
-    "Transfer",
-]
+__all__ = ["FastSimulation", "Packet", "Transfer"]
 
 
 class Transfer(NamedTuple):

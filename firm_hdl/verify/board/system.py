@@ -46,9 +46,7 @@ from firm_hdl.verify.ts3.acceptance import confirm_cases
 from firm_hdl.verify.ts3.compare import packet_differences
 from firm_hdl.verify.ts3.task import command_of, words_of
 
-__all__ = [
-    "Boards",
-]
+__all__ = ["Boards"]
 
 
 MOST = (1 << 32) - 1

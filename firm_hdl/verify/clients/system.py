@@ -51,12 +51,7 @@ from firm_hdl.verify.systems.system import (
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = [
-    "Libraries",
-    "compare",
-    "judge_library",
-    "reference_of",
-]
+__all__ = ["Libraries", "compare", "judge_library", "reference_of"]
 
 
 MOST_CHARACTERS = 400

@@ -26,15 +26,7 @@ from firm_hdl.cases.values import Plain, from_json, to_numbers
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError
 from firm_hdl.gateware import Deserializer, Serializer
-from firm_hdl.model import (
-    Array,
-    FieldType,
-    Message,
-    Primitive,
-    String,
-    closure,
-    element_of,
-)
+from firm_hdl.model import Array, FieldType, Message, Primitive, String, closure, element_of
 from firm_hdl.model import Sequence as SequenceType
 from firm_hdl.sim.harness import Harness
 from firm_hdl.sim.values import from_transfers, to_transfers
@@ -56,14 +48,7 @@ from firm_hdl.verify.references.worker_genpy import Objects, to_json
 from firm_hdl.verify.ros_python import worker
 from firm_hdl.wire import Wire
 
-__all__ = [
-    "CycloneDds",
-    "FirmHdl",
-    "Genpy",
-    "McapRos1",
-    "McapRos2",
-    "Rosbags",
-]
+__all__ = ["CycloneDds", "FirmHdl", "Genpy", "McapRos1", "McapRos2", "Rosbags"]
 
 
 def field_table(message: Message) -> dict[str, list[tuple[str, bool, str]]]:

@@ -8,15 +8,7 @@ from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
 from firm_hdl.verify.report.summary import Box, Counts, Curve, Fit, Trend
 from firm_hdl.verify.results.records import STAGES
 
-__all__ = [
-    "colour",
-    "counts_bar",
-    "cumulative",
-    "law_text",
-    "line_text",
-    "scatter",
-    "stages",
-]
+__all__ = ["colour", "counts_bar", "cumulative", "law_text", "line_text", "scatter", "stages"]
 
 COLOURS = 6
 """The number of colours in the style sheet, ``c1`` and so on."""

@@ -36,12 +36,7 @@ from firm_hdl.verify.report.tables import Table, TableCell
 from firm_hdl.verify.results.file import ResultsError, read_results
 from firm_hdl.verify.results.records import to_json as record_to_json
 
-__all__ = [
-    "FORMATS",
-    "add_report",
-    "run_report",
-    "write_report",
-]
+__all__ = ["FORMATS", "add_report", "run_report", "write_report"]
 
 _FOLDER = Path(__file__).parent
 

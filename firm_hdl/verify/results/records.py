@@ -11,12 +11,7 @@ from dataclasses import MISSING, dataclass, field, fields
 from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-from firm_hdl.verify.results.verdict import (
-    Failed,
-    NotJudged,
-    Verdict,
-    clipped,
-)
+from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict, clipped
 
 __all__ = [
     "STAGES",

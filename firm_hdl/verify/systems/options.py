@@ -87,7 +87,7 @@ class Options:
     broken: bool = True
     most_cases: int | None = None
     # `python`, or the simulator of exported text in which every run is replayed: a key of
-    # :data:`firm_hdl.verify.simulators.programs.SIMULATORS`.
+    # `firm_hdl.verify.simulators.programs.SIMULATORS`.
     simulator: str = "python"
     # Folders with ROS packages. They are searched before the distribution's own types.
     paths: tuple[str, ...] = ()
@@ -123,13 +123,13 @@ class Request(Options):
     libraries: tuple[str, ...] = ()
     widths: tuple[int, ...] = (8,)  # Buses, in bytes; see `each_width`.
     jobs: int | None = None  # Processes; `None`: one per processor.
-    executor: str = PROCESSES  # See :func:`firm_hdl.jobs.executors.run_each`.
+    executor: str = PROCESSES  # See `firm_hdl.jobs.executors.run_each`.
     oracles: tuple[str, ...] = ()  # Oracles of TS1; empty: all that are installed.
     golden: str | None = None  # Folder of golden plans.
     # Whether one type is simulated for all that have the same circuit. `None`: only if all types
     # are tested, and no recording.
     share_circuits: bool | None = None
-    # Board for the test system `board`, as :func:`firm_hdl.node.boards.board_of` takes it.
+    # Board for the test system `board`, as `firm_hdl.node.boards.board_of` takes it.
     board: str | None = None
     # File with the description of the board's node; `None`: one that loops the named types.
     node: str | None = None

@@ -14,12 +14,7 @@ from firm_hdl.plan import Payload, Plan
 from firm_hdl.sim.harness import RunResult
 from firm_hdl.verify.results.verdict import first_difference
 
-__all__ = [
-    "Expected",
-    "packet_differences",
-    "run_differences",
-    "transfer_differences",
-]
+__all__ = ["Expected", "packet_differences", "run_differences", "transfer_differences"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -49,13 +49,7 @@ from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError, libra
 from firm_hdl.verify.ts3.acceptance import Acceptance, measured
 from firm_hdl.wire import Wire, lay_out, too_large
 
-__all__ = [
-    "Selection",
-    "collect_recorded",
-    "replay",
-    "select",
-    "topics_of",
-]
+__all__ = ["Selection", "collect_recorded", "replay", "select", "topics_of"]
 
 
 _Message: TypeAlias = "tuple[str, str, int]"
