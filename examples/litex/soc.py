@@ -65,6 +65,8 @@ class TwistSoC(SoCCore):
         for name in ("command", "report"):
             region = SoCRegion(size=0x1000, cached=False)
             self.bus.add_slave(name, getattr(self, name).bus, region)
+        if self.irq.enabled:
+            self.irq.add("report")
         self.comb += [
             self.command.source.connect(self.motor.sink),
             self.motor.m_axis_linear_x.connect(self.sensor.s_axis_linear_x),
