@@ -208,7 +208,7 @@ class PlainPorts:
 class ComponentTop(PlainTop):
     """A component with ports of plain vectors. It adds neither registers nor latency.
 
-    `inside` is the component, if it was elaborated already; `also_resets` is as for `PlainTop`.
+    `inside` is the component, if it was elaborated already.
     """
 
     is_closed = False

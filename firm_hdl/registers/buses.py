@@ -13,7 +13,7 @@ from firm_hdl.registers.axi_lite import AxiLiteSignature, AxiLiteSlave, WordBusS
 from firm_hdl.registers.block import RegisterBlock
 from firm_hdl.registers.table import RegisterMap
 
-__all__ = ["BUSES", "BusKind", "CsrSignature", "CsrSlave", "add_registers", "register_members"]
+__all__ = ["BUSES", "BusKind", "CsrSignature", "CsrSlave", "add_registers", "bus_member"]
 
 BusKind: TypeAlias = Literal["axi4lite", "csr"]
 
@@ -86,8 +86,8 @@ class CsrSlave(Component):
         return m
 
 
-def register_members(table: RegisterMap, bus: BusKind) -> dict[str, Any]:
-    """Return the members of a component with registers.
+def bus_member(table: RegisterMap, bus: BusKind) -> dict[str, Any]:
+    """Return the member of a component for the bus of its registers.
 
     Members
     -------
@@ -95,13 +95,11 @@ def register_members(table: RegisterMap, bus: BusKind) -> dict[str, Any]:
         With `axi4lite`.
     csr : In(CsrSignature(table.address_bits))
         With `csr`.
-    interrupt : Out(1)
-        High while an event is set whose interrupt is enabled. A register.
     """
     if bus not in BUSES:
         raise ValueError(f"Bus must be one of {', '.join(BUSES)}, not {bus!r}")
     signature = {"axi4lite": AxiLiteSignature, "csr": CsrSignature}[bus](table.address_bits)
-    return {"axi" if bus == "axi4lite" else "csr": In(signature), "interrupt": Out(1)}
+    return {"axi" if bus == "axi4lite" else "csr": In(signature)}
 
 
 def add_registers(m: Module, port: Any, table: RegisterMap, interrupt: Value) -> Any:
@@ -110,14 +108,13 @@ def add_registers(m: Module, port: Any, table: RegisterMap, interrupt: Value) ->
     Parameters
     ----------
     port : interface
-        A bus of :func:`register_members`, seen from its master.
+        A bus of :func:`bus_member`, seen from its master.
     table : RegisterMap
         Begins with the registers of :mod:`firm_hdl.registers.head`. What ``control.reset`` clears
         besides the block is up to the caller.
     interrupt : Value
-        A member of :func:`register_members`.
+        A register that is high while an event is set whose interrupt is enabled.
     """
-    m.submodules.registers = block = RegisterBlock(table)
     slave: AxiLiteSlave | CsrSlave
     if hasattr(port, "awvalid"):
         m.submodules.slave = slave = AxiLiteSlave(table.address_bits)
@@ -125,6 +122,7 @@ def add_registers(m: Module, port: Any, table: RegisterMap, interrupt: Value) ->
     else:
         m.submodules.slave = slave = CsrSlave(table.address_bits)
         connect(m, port, slave.csr)
+    m.submodules.registers = block = RegisterBlock(table)
     connect(m, slave.bus, block.bus)
     events = Cat(block.interrupt_message, block.interrupt_error)
     enabled = Cat(block.interrupt_enable_message, block.interrupt_enable_error)

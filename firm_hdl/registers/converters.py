@@ -13,7 +13,7 @@ from firm_hdl.gateware.component import Component
 from firm_hdl.gateware.interfaces import PacketStream
 from firm_hdl.gateware.packets.counters import add_counters, counters_layout
 from firm_hdl.plan import Direction, Plan
-from firm_hdl.registers.buses import BusKind, add_registers, register_members
+from firm_hdl.registers.buses import BusKind, add_registers, bus_member
 from firm_hdl.registers.message import MessageMap
 
 __all__ = ["RegisterReceiver", "RegisterSender"]
@@ -45,8 +45,9 @@ class _Registers(Component):
         flow = In if self._direction == "deserializer" else Out
         super().__init__(
             {
-                **register_members(layout.table, bus),
+                **bus_member(layout.table, bus),
                 "packets": flow(PacketSignature(plan.bus_bytes)),
+                "interrupt": Out(1),
             }
         )
 
@@ -91,9 +92,11 @@ class RegisterReceiver(_Registers):
 
     Members
     -------
-    axi or csr, interrupt
-        As :func:`.register_members` has them.
+    axi or csr
+        As :func:`.bus_member` has it.
     packets : In(PacketSignature(bus_bytes))
+    interrupt : Out(1)
+        High while an event is set whose interrupt is enabled. A register.
     """
 
     _direction = "deserializer"
@@ -139,9 +142,11 @@ class RegisterSender(_Registers):
 
     Members
     -------
-    axi or csr, interrupt
-        As :func:`.register_members` has them.
+    axi or csr
+        As :func:`.bus_member` has it.
     packets : Out(PacketSignature(bus_bytes))
+    interrupt : Out(1)
+        High while an event is set whose interrupt is enabled. A register.
     """
 
     _direction = "serializer"

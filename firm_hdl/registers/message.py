@@ -197,13 +197,15 @@ def _words(
     taken: set[str] = set()
     # By word: name, lowest bit in the word, and bits of the record.
     found: dict[int, list[tuple[str, int, int, int, str]]] = {}
-    for item in items:
+    for run in _runs(items):
+        item, end = run[0], f"_to_{run[-1].path[-1]}" if len(run) > 1 else ""
         name = first_free(
-            identifier("_".join(["message", *map(str, item.path)])), taken, _with_halves
+            identifier("_".join(["message", *map(str, item.path)]) + end), taken, _with_halves
         )
         taken |= {each.lower() for each in _with_halves(name)}
-        what = f"{_dotted(item)}: {item.type}"
-        bits = item.type.bits
+        more = f" to {_dotted(run[-1])}" if len(run) > 1 else ""
+        what = f"{_dotted(item)}{more}: {item.type}"
+        bits = item.type.bits * len(run)
         for part in range(-(-bits // 32)):
             half = f"{name}_{('low', 'high')[part]}" if bits > 32 else name
             word, byte = divmod(item.address + WORD_BYTES * part, WORD_BYTES)
@@ -230,6 +232,30 @@ def _words(
             )
         )
     return registers, pieces
+
+
+def _runs(items: tuple[Item, ...]) -> Iterator[list[Item]]:
+    """Join the elements of an array that share a word, without gaps: thousands of bytes are many.
+
+    A single one is a list of its own.
+    """
+    run: list[Item] = []
+    for item in items:
+        if run and not _continues(run[-1], item):
+            yield run
+            run = []
+        run.append(item)
+    yield run
+
+
+def _continues(before: Item, item: Item) -> bool:
+    return (
+        isinstance(item.path[-1], int)
+        and before.path[:-1] == item.path[:-1]
+        and item.type.bits == 8 * item.type.bytes
+        and item.bit == before.bit + item.type.bits
+        and item.address % WORD_BYTES != 0
+    )
 
 
 def _with_halves(name: str) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from firm_hdl.node.gateware.clock import SECOND
 from firm_hdl.node.gateware.streams import node_counters_layout, time_layout
 from firm_hdl.node.register_map import counter_registers, register_map
 from firm_hdl.registers.axi_lite import AxiLiteSignature
-from firm_hdl.registers.buses import add_registers, register_members
+from firm_hdl.registers.buses import add_registers, bus_member
 
 __all__ = ["CoreSideSignature", "NodeRegisters", "node_register_members"]
 
@@ -48,15 +48,17 @@ def node_register_members(description: Description) -> dict[str, Any]:
 
     Members
     -------
-    axi or csr, interrupt
-        As :func:`.register_members` has them.
+    axi or csr
+        As :func:`.bus_member` has it.
+    interrupt : Out(1)
+        High while an event is set whose interrupt is enabled. A register.
     soft_reset : Out(1)
         Software asks for a reset. Whoever makes the reset of `sync` has to let it reset, too.
     """
     if not description.registers:
         return {}
-    bus = register_members(register_map(description), description.registers)
-    return {**bus, "soft_reset": Out(1)}
+    bus = bus_member(register_map(description), description.registers)
+    return {**bus, "interrupt": Out(1), "soft_reset": Out(1)}
 
 
 class NodeRegisters(Component):
