@@ -67,25 +67,27 @@ def test_the_doctor_finds_rospy_outside_of_the_environment(tmp_path):
     assert f"{python} -m venv --system-site-packages DIR" in text
 
 
-def completed(*words):
-    """What bash completes, after the code of ``--print-completion`` was run."""
-    line = " ".join(words)
-    script = (
-        'eval "$(firm-hdl --print-completion bash)"\n'
-        f"COMP_WORDS=({line}) COMP_CWORD={len(words) - 1} COMP_LINE='{line}' COMP_TYPE=9\n"
-        f'COMP_POINT={len(line)}; _python_argcomplete firm-hdl; echo "${{COMPREPLY[*]}}"\n'
-    )
+def in_bash(script):
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    return subprocess.check_output(
-        ["bash", "--norc", "-c", script], env={**ENVIRONMENT, "PATH": path}, text=True
+    command = ["bash", "--norc", "-c", script]
+    return subprocess.check_output(command, env={**ENVIRONMENT, "PATH": path}, text=True)
+
+
+def completed(code, *words):
+    """What bash completes, after some code was run."""
+    line = " ".join(words)
+    return in_bash(
+        f"{code}\nCOMP_WORDS=({line}) COMP_CWORD={len(words) - 1} COMP_LINE='{line}' COMP_TYPE=9\n"
+        f'COMP_POINT={len(line)}; _python_argcomplete firm-hdl; echo "${{COMPREPLY[*]}}"\n'
     ).split()
 
 
 def test_bash_completes_commands_options_and_types():
-    assert completed("firm-hdl", "bu") == ["build"]
-    board = completed("firm-hdl", "node", "build", "n.yaml", "--board", "ulx3s-1")
+    code = in_bash("firm-hdl --print-completion bash")
+    assert completed(code, "firm-hdl", "bu") == ["build"]
+    board = completed(code, "firm-hdl", "node", "build", "n.yaml", "--board", "ulx3s-1")
     assert board == ["ulx3s-12f"]
-    words = completed("firm-hdl", "build", "--with", "systemverilog,")
+    words = completed(code, "firm-hdl", "build", "--with", "systemverilog,")
     assert "systemverilog,all" in words
-    types = completed("firm-hdl", "info", "--distro", "noetic", "sensor_msgs/Im")
+    types = completed(code, "firm-hdl", "info", "--distro", "noetic", "sensor_msgs/Im")
     assert types == ["sensor_msgs/Image", "sensor_msgs/Imu"]
