@@ -39,7 +39,7 @@ DEFAULTS = {
         ["run", "n.yaml"],
         {"action": "run", "file": "n.yaml", "path": []}
         | {"board": "sim", "graph": None, "domain": None, "interface": None}
-        | {"seconds": None, "engine": "auto", "quiet": False, "wave": None},
+        | {"seconds": None, "engine": "auto", "quiet": False, "wave": None, "phc": None},
     ),
     "board": (
         ["init", "kria"],
