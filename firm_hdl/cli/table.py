@@ -93,7 +93,7 @@ COMMANDS: dict[str, Command] = {
     ),
     "board": Command(
         help="write a project that puts a node beside the processor of a Kria or of a PYNQ-Z2",
-        module="boards",
+        module="cli.boards",
         has_origins=False,
         examples=("firm-hdl board init kria", "firm-hdl board init pynq node.yaml --out my_board"),
     ),
