@@ -265,12 +265,13 @@ def _vivado_files(ip: Ip) -> dict[str, str]:
     }
 
 
-# Names of Platform Designer: kinds of interfaces, and roles of ports unless they are those of AXI.
+# Names of Platform Designer: kinds of interfaces, what others refer to first, and roles of ports
+# unless they are those of AXI.
 _QUARTUS_KINDS = {
-    "aximm": "axi4lite",
-    "axis": "axi4stream",
     "clock": "clock",
     "reset": "reset",
+    "aximm": "axi4lite",
+    "axis": "axi4stream",
     "interrupt": "interrupt",
 }
 _QUARTUS_ROLES = {"CLK": "clk", "RST": "reset_n", "INTERRUPT": "irq"}
@@ -279,8 +280,7 @@ _QUARTUS_ROLES = {"CLK": "clk", "RST": "reset_n", "INTERRUPT": "irq"}
 def _quartus_files(ip: Ip) -> dict[str, str]:
     buses = buses_of(ip.ports)
     by_name = {port.name: port for port in ip.ports}
-    # What others refer to comes first.
-    order = ("clock", "reset", "aximm", "axis", "interrupt")
+    order = list(_QUARTUS_KINDS)
     script = render(
         "packaging/quartus_hw.tcl",
         ip=ip,
@@ -331,14 +331,11 @@ def _for_tool(tool: Tool, ip: Ip) -> Ip:
 
 
 def _litex_module(name: str, designs: Sequence[Ip]) -> str:
-    def class_name(ip: Ip) -> str:
-        return ip.name.removeprefix(name).title().replace("_", "") or "Node"
-
     def design(ip: Ip) -> dict[str, Any]:
         buses = buses_of(ip.ports)
         return {
             "ip": ip,
-            "name": class_name(ip),
+            "name": ip.name.removeprefix(name).title().replace("_", "") or "Node",
             "streams": [bus for bus in buses if bus.kind == "axis"],
             "has_status": ip.library != "node" and "m_axis_status" in {bus.name for bus in buses},
             "ports": {port.name: port for port in ip.ports},
