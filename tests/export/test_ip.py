@@ -552,7 +552,8 @@ def test_node_with_a_stream_is_ip(tmp_path, capsys, monkeypatch, tool, link, oth
     assert main(command) == 1
     assert f"{file}:2:7: error: IP needs the link 'stream'" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-    file.write_text(NODE.format(link=link))
+    registers = "registers: axi4lite\n" if link == "axi_dma" else ""
+    file.write_text(NODE.format(link=link) + registers)
     assert main(command) == 0
     if tool == "litex":
         module = tmp_path / "out" / "demo" / "demo_litex.py"
@@ -565,8 +566,9 @@ def test_node_with_a_stream_is_ip(tmp_path, capsys, monkeypatch, tool, link, oth
     # In the project, not in the IP: a program of the processor includes it.
     assert "topic_cmd = 1;" in (folder.parents[1] / "demo_zynq.hpp").read_text()
     # They are ports without an interface.
-    assert {"mm2s_aresetn", "s2mm_aresetn"} <= set(left)
-    left -= {"mm2s_aresetn", "s2mm_aresetn"}
+    assert {"mm2s_aresetn", "s2mm_aresetn", "soft_reset"} <= set(left)
+    left -= {"mm2s_aresetn", "s2mm_aresetn", "soft_reset"}
+    assert found["s_axi"][2]["WSTRB"] == "s_axi_wstrb" and "irq" in found
     assert found["s_axis"][2]["TKEEP"] == "s_axis_tkeep"
     assert found["m_axis_subscribe_cmd_data"][2]["TDATA"] == "m_axis_subscribe_cmd_data_tdata"
     assert all(each.startswith(("time_", "counters_")) for each in left)

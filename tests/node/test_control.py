@@ -16,7 +16,7 @@ from firm_hdl.node.control import (
     nominal_rate,
     registers,
 )
-from firm_hdl.node.timekeeping import ClockKeeper
+from firm_hdl.node.timekeeping import ClockKeeper, with_seconds_of
 from tests.node.samples import read
 
 NOMINAL = nominal_rate(100e6)
@@ -106,6 +106,12 @@ def test_a_clock_is_set_once_and_then_kept_in_step(error):
     offsets, sets = run(error, jitter_ns=20_000)
     assert sets == 1
     assert all(abs(offset) < 30_000 for offset in offsets[60:])
+
+
+def test_a_clock_in_tai_has_the_seconds_of_the_system():
+    for ahead in (37 * 10**9 + 400_000_000, -START):
+        clock = with_seconds_of(lambda: START, lambda ahead=ahead: START + ahead)
+        assert clock() == START + (400_000_000 if ahead > 0 else 0)
 
 
 def sampled(keeper, sent_ns, offset_ns, delay=100_000):

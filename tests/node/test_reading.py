@@ -98,6 +98,11 @@ def test_names_are_completed_as_ros_does():
         ("node: a\nnamespace: x", "2:12: error: a namespace starts with '/'"),
         ("node: a\nnamespace: /x/", "2:12: error: a namespace does not end with '/'"),
         ("node: a\nbus_bytes: 32", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 32"),
+        (
+            "node: a\nregisters: axi",
+            "2:12: error: 'registers' must be 'axi4lite' or 'csr', not 'axi'",
+        ),
+        ("node: a\nregisters: true", "2:12: error: 'registers' must be text, not a boolean"),
         ("node: a\nbus_bytes: 3", "2:12: error: 'bus_bytes' must be 1, 2, 4, 8 or 16, not 3"),
         ("node: a\nbus_bytes: 0", "2:12: error: 'bus_bytes' must be at least 1, not 0"),
         ("node: a\nbus_bytes: !!int ''", "2:12: error: 'bus_bytes' must be an integer, not ''"),

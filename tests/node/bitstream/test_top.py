@@ -152,6 +152,11 @@ def test_each_mistake_is_at_its_place_in_the_description():
             "2:12-3: the clock of ulx3s-85f, 25 MHz, gives no 600 MHz; near is 'clock_mhz: 400'",
         ),
         (
+            {"clock_mhz: 5": "clock_mhz: 5\nregisters: axi4lite"},
+            "ulx3s-85f",
+            "3:12-8: ulx3s-85f has no processor for the registers; the top level is yours to write",
+        ),
+        (
             {"clock_mhz: 5": "clock_mhz: 25"},
             "icebreaker",
             "2:12-2: the clock of icebreaker, 12 MHz, gives no 25 MHz; near is 'clock_mhz: 25.125'",

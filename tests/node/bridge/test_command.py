@@ -83,6 +83,15 @@ def test_a_board_that_never_answers_ends_with_an_error(line_file, capsys):
     assert "error: the board tcp://127.0.0.1:1 did not answer in 0.3 s" in err
 
 
+def test_a_clock_that_is_none_is_an_error(file, capsys):
+    for device, error in {
+        "/dev/null": "cannot read '/dev/null' as a PTP hardware clock: Invalid argument",
+        "/nowhere": "cannot open the clock '/nowhere': No such file or directory",
+    }.items():
+        assert main(["node", "run", file, "--graph", "none", "--phc", device]) == 1
+        assert f"error: {error}" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("link", ["udp", "tcp"])
 @pytest.mark.parametrize("lines", [0, 3])
 def test_the_end_of_the_input_ends_it_without_a_board(
