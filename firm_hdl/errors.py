@@ -50,7 +50,7 @@ class Source:
     text: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Span:
     """A range of characters of a source. Line and column are computed when they are read."""
 
@@ -76,7 +76,7 @@ class Span:
         return self.source.text[begin : None if end < 0 else end].rstrip("\r")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Diagnostic:
     """One problem: a sentence, and its place in a text (`None` if there is no place)."""
 

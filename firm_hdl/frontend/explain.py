@@ -14,7 +14,15 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedTok
 
 from firm_hdl.model import PRIMITIVES, Dialect
 
-__all__ = ["NAME_RULES", "alternatives", "clip", "explain", "similar_builtin", "words_at"]
+__all__ = [
+    "NAME_RULES",
+    "alternatives",
+    "clip",
+    "explain",
+    "place_of",
+    "similar_builtin",
+    "words_at",
+]
 
 NAME_RULES = {
     "NAME": "letters, digits and underscores, a letter first",
@@ -80,7 +88,10 @@ def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, i
     tuple of int, int and str
         Start and end of the words that are wrong, as offsets in the line, and the message.
     """
-    start, expected = _place(error, line)
+    start = place_of(error, len(line.rstrip()))
+    assert isinstance(error, UnexpectedCharacters | UnexpectedToken)
+    terminals = error.expected if isinstance(error, UnexpectedToken) else error.allowed
+    expected = frozenset(terminals or ())
     if dialect == "ros2" and line[:1].isspace():
         start = len(line) - len(line.lstrip())
         return start, len(line.rstrip()), "a definition must start in the first column"
@@ -117,17 +128,12 @@ def similar_builtin(word: str, dialect: Dialect) -> list[str]:
     return get_close_matches(word, [*PRIMITIVES[dialect], "string"], n=1, cutoff=0.7)
 
 
-def _place(error: UnexpectedInput, line: str) -> tuple[int, frozenset[str]]:
-    """Find where in the line the parser stopped, and which terminals it expected."""
-    if isinstance(error, UnexpectedCharacters):
-        assert error.pos_in_stream is not None
-        return error.pos_in_stream, frozenset(error.allowed or ())
-    assert isinstance(error, UnexpectedToken)
-    expected = frozenset(error.expected)
-    if error.token.type == "$END":
-        return len(line.rstrip()), expected
-    assert error.token.start_pos is not None
-    return error.token.start_pos, expected
+def place_of(error: UnexpectedInput, end: int) -> int:
+    """Return where in the text the parser stopped: at `end` if more had to follow."""
+    if isinstance(error, UnexpectedToken) and error.token.type == "$END":
+        return end
+    assert error.pos_in_stream is not None
+    return error.pos_in_stream
 
 
 _Found = tuple[int, str] | None

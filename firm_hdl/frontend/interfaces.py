@@ -128,14 +128,14 @@ def _check_structs(
     name: TypeName, source: Source, messages: dict[str, MessageSyntax]
 ) -> Iterator[Diagnostic]:
     """Check that an IDL file declares the type of its name; rosidl does not check this."""
-    start = Span(source=source, start=0, end=0)
+    start = Span(source, 0, 0)
     if name.dialect == "ros1":
-        yield Diagnostic(message="ROS 1 has no definitions in IDL", span=start)
+        yield Diagnostic("ROS 1 has no definitions in IDL", start)
     want = _structs(name)
     if list(messages) != want:
         wanted = " and ".join(f"'{struct}'" for struct in want)
         found = " and ".join(f"'{struct}'" for struct in messages)
-        yield Diagnostic(message=f"this file must declare {wanted}, not {found}", span=start)
+        yield Diagnostic(f"this file must declare {wanted}, not {found}", start)
 
 
 def _read_parts(
@@ -189,11 +189,11 @@ def _check_separators(
     if len(separators) < want:
         message = needs + ("; there is only this one" if separators else "")
         offset, line = separators[0] if separators else (0, "")
-        span = Span(source=source, start=offset, end=offset + len(line))
-        yield Diagnostic(message=message, span=span)
+        span = Span(source, offset, offset + len(line))
+        yield Diagnostic(message, span)
     for offset, line in separators[want:]:
-        span = Span(source=source, start=offset, end=offset + len(line))
-        yield Diagnostic(message=f"{too_many}; this line is too many", span=span)
+        span = Span(source, offset, offset + len(line))
+        yield Diagnostic(f"{too_many}; this line is too many", span)
 
 
 def _text(source: Source, part: list[_Line], language: Kind, dialect: Dialect) -> str:
@@ -267,51 +267,38 @@ def _derived_syntax(name: TypeName, suffix: str, text: str) -> MessageSyntax:
 
         def span(group: int, match: re.Match[str] = match, offset: int = offset) -> Span:
             start, end = match.span(group)
-            return Span(source=source, start=offset + start, end=offset + end)
+            return Span(source, offset + start, offset + end)
 
         package, word, bound, field_name = match.groups()
-        is_builtin = word in PRIMITIVES[name.dialect]
         is_of_interface = package is None and word.startswith(name.name)
         type_ = TypeSyntax(
             package=package,
             name=word,
-            is_builtin=is_builtin,
-            bound=None,
+            is_builtin=word in PRIMITIVES[name.dialect],
             array="one" if bound is None else "sequence",
-            size=None if bound is None else SizeSyntax(value=int(bound), span=span(3)),
-            span=Span(source=source, start=offset, end=offset + match.start(4) - 1),
+            size=None if bound is None else SizeSyntax(int(bound), span(3)),
+            span=Span(source, offset, offset + match.start(4) - 1),
             kind=name.kind if is_of_interface else None,
         )
-        members.append(
-            FieldSyntax(
-                type=type_,
-                name=NameSyntax(text=field_name, span=span(4)),
-                default=None,
-                comment="",
-                unit=None,
-            )
-        )
-    return MessageSyntax(
-        source=source, dialect=name.dialect, members=tuple(members), comment="", text=text
-    )
+        members.append(FieldSyntax(type=type_, name=NameSyntax(field_name, span(4))))
+    return MessageSyntax(source=source, dialect=name.dialect, members=tuple(members), text=text)
 
 
 def check_type_name(
     source: Source, name: TypeName, messages: Iterable[str]
 ) -> Iterator[Diagnostic]:
     """Check the names of a file and of its messages; errors point at the start of the text."""
-    start = Span(source=source, start=0, end=0)
+    start = Span(source, 0, 0)
     dialect, any_name = name.dialect, "Name" if name.dialect == "ros2" else "name"
     if not is_type_name(f"{name.package}/{any_name}", dialect):
         rule = NAME_RULES["FIELD_NAME" if dialect == "ros2" else "NAME"]
-        message = f"'{name.package}' is not a legal package name: {rule}"
-        yield Diagnostic(message=message, span=start)
+        yield Diagnostic(f"'{name.package}' is not a legal package name: {rule}", start)
     # In a recording, each message of a service or an action has a definition of its own.
     bases = [next((o.name for o in owners(name)), m) if m == name.name else m for m in messages]
     if not all(is_type_name(base, dialect) for base in bases):
         rule = NAME_RULES["MESSAGE_NAME" if dialect == "ros2" else "NAME"]
         what = {"msg": "message", "srv": "service", "action": "action"}[name.kind]
-        yield Diagnostic(message=f"'{name.name}' is not a legal {what} name: {rule}", span=start)
+        yield Diagnostic(f"'{name.name}' is not a legal {what} name: {rule}", start)
 
 
 def check_members(syntax: MessageSyntax) -> Iterator[Diagnostic]:
@@ -345,7 +332,7 @@ def _check_names(syntax: MessageSyntax) -> Iterator[Diagnostic]:
         if name.text in seen:
             what = "field" if is_field else "constant"
             message = f"{what} '{name.text}' is already declared in line {seen[name.text].line}"
-            yield Diagnostic(message=message, span=name.span)
+            yield Diagnostic(message, name.span)
         seen.setdefault(name.text, name.span)
 
 
@@ -359,9 +346,9 @@ def _check_size(size: SizeSyntax | None, what: str) -> Iterator[Diagnostic]:
     if size is None:
         return
     if size.value < 1:
-        yield Diagnostic(message=f"the {what} must be at least 1, not 0", span=size.span)
+        yield Diagnostic(f"the {what} must be at least 1, not 0", size.span)
     elif size.value > MAX_LENGTH:
-        yield Diagnostic(message=f"the {what} must be at most {MAX_LENGTH}", span=size.span)
+        yield Diagnostic(f"the {what} must be at most {MAX_LENGTH}", size.span)
 
 
 def _check_list(
@@ -370,12 +357,10 @@ def _check_list(
     count = len(syntax.items)
     if type_.size is not None:
         size = type_.size.value
-        if type_.array == "array" and count != size:
-            message = f"the default must have {size} elements, not {count}"
-            yield Diagnostic(message=message, span=syntax.span)
-        elif count > size:
-            message = f"the default must have at most {size} elements, not {count}"
-            yield Diagnostic(message=message, span=syntax.span)
+        is_array = type_.array == "array"
+        if count != size if is_array else count > size:
+            most = f"{'' if is_array else 'at most '}{size}"
+            yield Diagnostic(f"the default must have {most} elements, not {count}", syntax.span)
     for item in syntax.items:
         yield from _check_value(item, type_, primitives)
 
@@ -387,12 +372,11 @@ def _check_value(
     if isinstance(value, str):
         if type_.bound is not None and len(value) > type_.bound.value:
             message = f"a string of {len(value)} characters does not fit {type_.name}"
-            yield Diagnostic(message=f"{message}<={type_.bound.value}", span=syntax.span)
+            yield Diagnostic(f"{message}<={type_.bound.value}", syntax.span)
         return
     primitive = primitives[type_.name]
     if primitive.kind == "int":
         bits = 8 * primitive.bytes - primitive.signed
         low, high = -(2**bits) if primitive.signed else 0, 2**bits - 1
         if not low <= value <= high:
-            message = f"the value of {primitive} must be in {low}..{high}"
-            yield Diagnostic(message=message, span=syntax.span)
+            yield Diagnostic(f"the value of {primitive} must be in {low}..{high}", syntax.span)

@@ -16,10 +16,10 @@ import re
 import textwrap
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 from importlib import resources
 from itertools import groupby
-from typing import NamedTuple
 
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput
@@ -163,13 +163,14 @@ def read_message(
     """
     parser = _parser(dialect)
     comments = CommentCollector()
-    drafts: list[tuple[_Draft, list[str]]] = []
+    # The comment of a member is complete at the end.
+    members: list[tuple[MemberSyntax, list[str]]] = []
     diagnostics: list[Diagnostic] = []
     for offset, line in lines_of(source.text, dialect) if lines is None else lines:
         if len(diagnostics) >= MAX_DIAGNOSTICS:
             message = "too many errors; the rest of this file was not checked"
-            span = Span(source=source, start=offset, end=offset + len(line))
-            diagnostics.append(Diagnostic(message=message, span=span))
+            span = Span(source, offset, offset + len(line))
+            diagnostics.append(Diagnostic(message, span))
             break
         if not line.startswith("#"):
             comments.end_head()
@@ -177,20 +178,23 @@ def read_message(
             tree = parser.parse(line, start="line")
         except UnexpectedInput as error:
             start, end, message = explain(error, line, dialect)
-            span = Span(source=source, start=offset + start, end=offset + end)
-            diagnostics.append(Diagnostic(message=message, span=span))
+            span = Span(source, offset + start, offset + end)
+            diagnostics.append(Diagnostic(message, span))
             continue
         definition = _collect_comment(tree, comments)
         if definition is not None:
-            draft = _Reader(source, offset).draft(definition)
-            if isinstance(draft, Diagnostic):
-                diagnostics.append(draft)
+            member = _Reader(source, offset).member(definition)
+            if isinstance(member, Diagnostic):
+                diagnostics.append(member)
             else:
-                drafts.append((draft, comments.claim()))
-    members = tuple(_member(draft, found) for draft, found in drafts)
+                members.append((member, comments.claim()))
     comment, _ = condense(comments.head)
     syntax = MessageSyntax(
-        source=source, dialect=dialect, members=members, comment=comment, text=text
+        source=source,
+        dialect=dialect,
+        members=tuple(_described(member, lines) for member, lines in members),
+        comment=comment,
+        text=text,
     )
     return syntax, diagnostics
 
@@ -250,22 +254,9 @@ def _collect_comment(line: Tree[Token], comments: CommentCollector) -> Tree[Toke
     return definition
 
 
-class _Draft(NamedTuple):
-    """A definition whose comment is not complete yet."""
-
-    type: TypeSyntax
-    name: NameSyntax
-    value: ValueSyntax | ListSyntax | None
-    is_constant: bool
-
-
-def _member(draft: _Draft, lines: list[str]) -> MemberSyntax:
+def _described(member: MemberSyntax, lines: list[str]) -> MemberSyntax:
     comment, unit = condense(lines)
-    type_, name, value, is_constant = draft
-    if is_constant:
-        assert isinstance(value, ValueSyntax)
-        return ConstantSyntax(type=type_, name=name, value=value, comment=comment, unit=unit)
-    return FieldSyntax(type=type_, name=name, default=value, comment=comment, unit=unit)
+    return replace(member, comment=comment, unit=unit)
 
 
 class _Reader:
@@ -281,34 +272,33 @@ class _Reader:
         self._source = source
         self._offset = offset
 
-    def draft(self, tree: Tree[Token]) -> _Draft | Diagnostic:
+    def member(self, tree: Tree[Token]) -> MemberSyntax | Diagnostic:
         """Read a definition. Errors that a grammar cannot express are returned."""
         children = [child for child in tree.children if child is not None]
         at_name = next(i for i, c in enumerate(children) if _kind(c) in _NAMES)
-        name = children[at_name]
-        assert isinstance(name, Token)
+        token = children[at_name]
+        assert isinstance(token, Token)
+        name = NameSyntax(str(token), self._span(token))
         try:
             type_ = self._type(children[:at_name])
             value = self._value(children[at_name + 1 :])
         except _TokenError as error:
-            return Diagnostic(message=error.message, span=self._span(error.token))
-        is_constant = tree.data == "constant"
+            wrong, message = error.args
+            return Diagnostic(message, self._span(wrong))
+        if tree.data != "constant":
+            return FieldSyntax(type=type_, name=name, default=value)
         indent = self._source.text[self._offset : type_.span.start]
         # The grammar of ROS 2 has no indented definitions.
-        if is_constant and type_.name == "string" and " " in indent:
+        if type_.name == "string" and " " in indent:
             message = "a string constant must start in the first column: genmsg would read "
-            message += f"'string {name}' for its name"
-            return Diagnostic(message=message, span=type_.span)
-        if is_constant and value is None:
+            message += f"'string {token}' for its name"
+            return Diagnostic(message, type_.span)
+        if value is None:
             # ``string NAME=`` is the empty text.
-            assert name.end_pos is not None
-            end = Span(
-                source=self._source,
-                start=self._offset + name.end_pos,
-                end=self._offset + name.end_pos,
-            )
+            end = Span(self._source, name.span.end, name.span.end)
             value = ValueSyntax(value="", text="", span=end)
-        return _Draft(type_, NameSyntax(text=str(name), span=self._span(name)), value, is_constant)
+        assert isinstance(value, ValueSyntax)
+        return ConstantSyntax(type=type_, name=name, value=value)
 
     def _type(self, parts: list[Token | Tree[Token]]) -> TypeSyntax:
         head, *suffixes = parts
@@ -337,7 +327,7 @@ class _Reader:
     def _size(self, suffix: Token | Tree[Token]) -> SizeSyntax | None:
         for token in _tokens([suffix]):
             if token.type == "SIZE":
-                return SizeSyntax(value=_integer(token), span=self._span(token))
+                return SizeSyntax(_integer(token), self._span(token))
         return None
 
     def _value(self, parts: list[Token | Tree[Token]]) -> ValueSyntax | ListSyntax | None:
@@ -370,11 +360,7 @@ class _Reader:
     def _span(self, first: Token, last: Token | None = None) -> Span:
         last = last or first
         assert first.start_pos is not None and last.end_pos is not None
-        return Span(
-            source=self._source,
-            start=self._offset + first.start_pos,
-            end=self._offset + last.end_pos,
-        )
+        return Span(self._source, self._offset + first.start_pos, self._offset + last.end_pos)
 
 
 _NAMES = frozenset({"NAME", "FIELD_NAME", "CONSTANT_NAME"})
@@ -382,12 +368,7 @@ _BRACKETS = frozenset({"EMPTY_LIST", "LIST_OPEN", "LIST_CLOSE", "LAST_CLOSE"})
 
 
 class _TokenError(Exception):
-    """A token that the grammar accepts but that has no value."""
-
-    def __init__(self, token: Token, message: str) -> None:
-        super().__init__(message)
-        self.token = token
-        self.message = message
+    """A token that the grammar accepts but that has no value: the token, and why."""
 
 
 def _kind(node: Token | Tree[Token]) -> str:

@@ -270,9 +270,9 @@ class RecordingOrigin:
                 f"{distro}"
             ]
         for reason in reasons[:_MOST_REASONS]:
-            yield Diagnostic(message=reason)
+            yield Diagnostic(reason)
         if len(reasons) > _MOST_REASONS:
-            yield Diagnostic(message=f"{len(reasons) - _MOST_REASONS} more types cannot be used")
+            yield Diagnostic(f"{len(reasons) - _MOST_REASONS} more types cannot be used")
 
 
 def _is_of_dds(text: str) -> bool:

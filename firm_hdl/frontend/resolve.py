@@ -186,7 +186,7 @@ class Resolver:
             # In a definition, types are written without ``/msg/``.
             names = [base if p == entry.name.package else f"{p}/{base}" for p, _, base in similar]
             message = did_you_mean(message, [*builtins, *names])
-        return Diagnostic(message=message, span=span)
+        return Diagnostic(message, span)
 
     def _enter(self, name: TypeName) -> _Entry | None:
         """Read a type's text, once."""
@@ -213,9 +213,8 @@ class Resolver:
         return _Entry(name, syntax, [*unit.diagnostics], list(needs.items()))
 
     def _failed(self, name: TypeName, diagnostics: Iterable[Diagnostic]) -> _Entry:
-        nothing = MessageSyntax(
-            source=Source(name=str(name), text=""), dialect=self._dialect, members=(), comment=""
-        )
+        source = Source(name=str(name), text="")
+        nothing = MessageSyntax(source=source, dialect=self._dialect, members=())
         return _Entry(name, nothing, list(diagnostics), [], is_done=True)
 
     def _need(self, type_: TypeSyntax, package: str) -> TypeName | None:
@@ -327,4 +326,4 @@ def _place(diagnostic: Diagnostic, source: Source) -> tuple[int, int]:
 
 def _cycle(path: list[TypeName], name: TypeName, span: Span) -> Diagnostic:
     steps = " -> ".join(map(str, [*path[path.index(name) :], name]))
-    return Diagnostic(message=f"type '{name}' contains itself: {steps}", span=span)
+    return Diagnostic(f"type '{name}' contains itself: {steps}", span)

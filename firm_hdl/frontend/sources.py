@@ -295,7 +295,7 @@ class Sources:
         for origin, names in zip(self._origins, self._names, strict=True):
             if isinstance(origin, FolderOrigin):
                 found |= dict.fromkeys(origin.problem(*name) for name in sorted(names))
-        return [Diagnostic(message=message) for message in found if message]
+        return [Diagnostic(message) for message in found if message]
 
     @cached_property
     def names(self) -> frozenset[tuple[str, Kind, str]]:
@@ -403,6 +403,6 @@ def _read(path: str) -> Source:
     except UnicodeDecodeError as error:
         source = Source(name=path, text=data.decode("utf-8", "replace"))
         start = len(data[: error.start].decode("utf-8"))
-        span = Span(source=source, start=start, end=start + 1)
+        span = Span(source, start, start + 1)
         message = f"byte 0x{data[error.start]:02x} is not UTF-8 text"
         raise DefinitionError.of(message, span) from None

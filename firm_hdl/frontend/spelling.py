@@ -8,7 +8,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import NoReturn
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend.names import KINDS
 from firm_hdl.frontend.scan import package_name
 
@@ -78,15 +78,17 @@ def package_of_file(path: str) -> tuple[str, str]:
         if kind in KINDS:
             break
     else:
-        raise _error(
+        raise DefinitionError.of(
             f"'{path}' is in no package of ROS: its folder has to be 'msg', 'srv' or 'action' in "
             "the folder of the package"
         )
     if file.suffix not in (f".{kind}", ".idl"):
-        raise _error(f"'{path}' is in a folder '{kind}', whose files end in .{kind} or .idl")
+        raise DefinitionError.of(
+            f"'{path}' is in a folder '{kind}', whose files end in .{kind} or .idl"
+        )
     package, wrong = package_name(str(folder), (folder / "package.xml").is_file())
     if wrong:
-        raise _error(wrong)
+        raise DefinitionError.of(wrong)
     place = str(folder) if os.path.isabs(path) else os.path.relpath(folder)
     return place, f"{package}/{kind}/{file.stem}"
 
@@ -94,12 +96,8 @@ def package_of_file(path: str) -> tuple[str, str]:
 def _refuse_missing(path: str) -> NoReturn:
     folder = os.path.dirname(path)
     if not os.path.isdir(folder or "."):
-        raise _error(f"there is no file '{path}', and no folder '{folder}'")
+        raise DefinitionError.of(f"there is no file '{path}', and no folder '{folder}'")
     names = {each.casefold(): each for each in os.listdir(folder or ".")}
     near = get_close_matches(os.path.basename(path).casefold(), names, n=1)
     hint = f"; did you mean '{os.path.join(folder, names[near[0]])}'?" if near else ""
-    raise _error(f"there is no file '{path}'{hint}")
-
-
-def _error(message: str) -> DefinitionError:
-    return DefinitionError([Diagnostic(message=message)])
+    raise DefinitionError.of(f"there is no file '{path}'{hint}")

@@ -26,15 +26,15 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class NameSyntax:
-    """The name of a field or a constant."""
+    """A name that a text declares, such as that of a field."""
 
     text: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class SizeSyntax:
     """A number of elements or of characters."""
 
@@ -65,12 +65,12 @@ class TypeSyntax:
         The number in the brackets: the length of an array, the bound of a sequence.
     """
 
-    package: str | None
+    package: str | None = None
     name: str
-    is_builtin: bool
-    bound: SizeSyntax | None
-    array: Literal["one", "array", "sequence"]
-    size: SizeSyntax | None
+    is_builtin: bool = True
+    bound: SizeSyntax | None = None
+    array: Literal["one", "array", "sequence"] = "one"
+    size: SizeSyntax | None = None
     span: Span
     kind: Literal["msg", "srv", "action"] | None = None
 
@@ -98,9 +98,9 @@ class FieldSyntax:
 
     type: TypeSyntax
     name: NameSyntax
-    default: ValueSyntax | ListSyntax | None
-    comment: str
-    unit: str | None
+    default: ValueSyntax | ListSyntax | None = None
+    comment: str = ""
+    unit: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,8 +110,8 @@ class ConstantSyntax:
     type: TypeSyntax
     name: NameSyntax
     value: ValueSyntax
-    comment: str
-    unit: str | None
+    comment: str = ""
+    unit: str | None = None
 
 
 MemberSyntax: TypeAlias = FieldSyntax | ConstantSyntax
@@ -138,6 +138,6 @@ class MessageSyntax:
     source: Source
     dialect: Dialect
     members: tuple[MemberSyntax, ...]
-    comment: str
+    comment: str = ""
     text: str | None = None
     language: Literal["msg", "idl"] = "msg"

@@ -48,8 +48,7 @@ def hash_lines(library: Library, names: Iterable[str]) -> tuple[list[str], Defin
         try:
             return f"{type_hash(interface)}  {interface.name}"
         except ValueError as error:
-            problem = Diagnostic(message=f"{library.distro}: {error}")
-            raise DefinitionError([problem]) from None
+            raise DefinitionError.of(f"{library.distro}: {error}") from None
 
     return of_each(library, names, line)
 
@@ -106,5 +105,4 @@ def _interface(library: Library, name: str) -> Interface:
 
 def _require(library: Library, dialect: Dialect, message: str) -> None:
     if library.dialect != dialect:
-        message = f"{library.distro}: {message}"
-        raise DefinitionError.of(message)
+        raise DefinitionError.of(f"{library.distro}: {message}")

@@ -23,14 +23,10 @@ def md5sum(interface: Message | Service) -> str:
     """
     if interface.dialect != "ros1":
         raise ValueError(f"Only types of ROS 1 have md5 sums, and {interface} is of ROS 2")
-    parts = (
-        (interface,)
-        if isinstance(interface, Message)
-        else (
-            interface.request,
-            interface.response,
-        )
-    )
+    if isinstance(interface, Service):
+        parts = [interface.request, interface.response]
+    else:
+        parts = [interface]
     sums: dict[str, str] = {}
     for message in closure(parts):
         sums[message.name] = _digest(_text(message, sums))

@@ -53,11 +53,10 @@ def ros1_proto(message: Message) -> str:
     for part in closure([message]):
         values[part.name] = sum(1 + _values(item.type, values) for item in part.fields)
         if values[part.name] > _MAX_VALUES:
-            problem = (
+            raise DefinitionError.of(
                 f"{part.name} has an example of {values[part.name]} values, which is more than "
                 f"{_MAX_VALUES}"
             )
-            raise DefinitionError.of(problem)
     node = _Writer(name=message.name).message(message, 1)
     return yaml.serialize(node, Dumper=yaml.SafeDumper).rstrip("\n")
 
@@ -88,8 +87,9 @@ class _Writer:
 
     def message(self, message: Message, level: int) -> yaml.MappingNode:
         if level > _MAX_LEVELS:
-            problem = f"{self.name} has an example of more than {_MAX_LEVELS} levels"
-            raise DefinitionError.of(problem)
+            raise DefinitionError.of(
+                f"{self.name} has an example of more than {_MAX_LEVELS} levels"
+            )
         has_long_list = any(
             item.type.count > _MAX_BLOCK and not _is_packed(item.type)
             for item in message.fields

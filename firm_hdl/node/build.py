@@ -134,7 +134,7 @@ def build_node(
     with conflicts_reported(description), search_put_off():
         circuit = rtlil.rtlil_of(NodeTop(node), name=name)
     script = link_script(description, stimuli, has_accelerator=has_accelerator)
-    own = accelerator_files(description, node.accelerator)
+    own = accelerator_files(node.accelerator)
     if ip and (own.language == "vhdl" or own.headers):
         message = "IP takes an accelerator in Amaranth, or in Verilog without include files"
         raise DefinitionError([Diagnostic(message=message, span=description.accelerator_span)])

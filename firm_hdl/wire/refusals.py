@@ -54,7 +54,7 @@ def too_large(message: Message) -> list[Diagnostic]:
         )
     else:
         return []
-    return [Diagnostic(message=f"{message.name} has {text} can be laid out")]
+    return [Diagnostic(f"{message.name} has {text} can be laid out")]
 
 
 def _without_bytes(message: Message) -> list[Diagnostic]:
@@ -65,5 +65,5 @@ def _without_bytes(message: Message) -> list[Diagnostic]:
             if isinstance(kind, Primitive) and not kind.has_wire_format:
                 what = f"field '{item.name}' of {owner.name} is of type '{kind}'"
                 why = "systems do not agree about its bytes, so it cannot be put on a wire"
-                found.append(Diagnostic(message=f"{what}: {why}", span=item.span))
+                found.append(Diagnostic(f"{what}: {why}", item.span))
     return found

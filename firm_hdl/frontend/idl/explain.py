@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from lark.exceptions import UnexpectedInput
 
-from firm_hdl.frontend.explain import alternatives, clip, words_at
+from firm_hdl.frontend.explain import alternatives, clip, place_of, words_at
 
 __all__ = ["explain"]
 
@@ -84,7 +84,7 @@ def explain(error: UnexpectedInput, text: str, accepts: Iterable[str]) -> tuple[
     tuple of int, int and str
         Start and end of the words that are wrong, as offsets in the text, and the message.
     """
-    start = _place(error, text)
+    start = place_of(error, len(text.rstrip(_BLANKS)))
     expected = frozenset(accepts)
     # A short context is enough to recognize a known mistake, even after long names or comments.
     before = text[max(0, start - 200) : start]
@@ -94,18 +94,6 @@ def explain(error: UnexpectedInput, text: str, accepts: Iterable[str]) -> tuple[
             length, message = found
             return start, start + length, message
     return _in_general(text, start, expected)
-
-
-def _place(error: UnexpectedInput, text: str) -> int:
-    if isinstance(error, UnexpectedCharacters):
-        assert error.pos_in_stream is not None
-        return error.pos_in_stream
-    assert isinstance(error, UnexpectedToken)
-    if error.token.type == "$END":
-        return len(text.rstrip(_BLANKS))
-    start: int | None = error.token.start_pos
-    assert start is not None
-    return start
 
 
 _Found = tuple[int, str] | None

@@ -32,7 +32,7 @@ from firm_hdl.frontend.idl.tree import (
 )
 from firm_hdl.frontend.idl.values import AlreadyReportedError, UnknownNameError, Value
 
-__all__ = ["CONSTANTS", "Alias", "Names", "Path", "definitions", "included"]
+__all__ = ["CONSTANTS", "Declared", "Names", "Path", "definitions", "included"]
 
 Path = tuple[str, ...]
 
@@ -40,12 +40,37 @@ CONSTANTS = "_Constants"
 """Suffix of the module with a struct's constants, after the struct's name."""
 
 
-class Alias(NamedTuple):
-    """One name that a typedef declares, and the modules around it."""
+class Declared(NamedTuple):
+    """A type as written in one place: that of a typedef, or of a member of a struct.
+
+    Attributes
+    ----------
+    path : tuple of str
+        The modules around it.
+    """
 
     path: Path
     type: TypeNode
     declarator: Declarator
+    struct: str | None = None
+
+    @property
+    def core(self) -> TypeNode:
+        """The type without the sequences around it."""
+        type_ = self.type
+        while isinstance(type_, SequenceType):
+            type_ = type_.element
+        return type_
+
+    @property
+    def sequences(self) -> list[SequenceType]:
+        """The sequences around the core, the inner one first."""
+        found = []
+        type_ = self.type
+        while isinstance(type_, SequenceType):
+            found.append(type_)
+            type_ = type_.element
+        return found[::-1]
 
 
 def definitions(file: FileSyntax) -> Iterator[tuple[Path, Definition]]:
@@ -112,14 +137,14 @@ class Names:
     ----------
     constants : dict of tuple of str to (Value or None)
         By full name; `None` for a constant with an error, which has been reported.
-    aliases : dict of str to Alias
+    aliases : dict of str to Declared
         What typedefs declare, by last name.
     enums, structs : dict of str to tuple of str
         Full names, by last name.
     """
 
     constants: dict[Path, Value | None] = field(default_factory=dict)
-    aliases: dict[str, Alias] = field(default_factory=dict)
+    aliases: dict[str, Declared] = field(default_factory=dict)
     enums: dict[str, Path] = field(default_factory=dict)
     structs: dict[str, Path] = field(default_factory=dict)
     _by_last: dict[str, list[Path]] = field(default_factory=dict)
@@ -148,8 +173,8 @@ class Names:
                         meaning = _describe(definition.type, declarator)
                         if meanings.setdefault(name.text, meaning) != meaning:
                             message = f"typedef '{name.text}' is already declared as another type"
-                            wrong.append(Diagnostic(message=message, span=name.span))
-                        self.aliases[name.text] = Alias(path, definition.type, declarator)
+                            wrong.append(Diagnostic(message, name.span))
+                        self.aliases[name.text] = Declared(path, definition.type, declarator)
                 case Enum():
                     self.enums[definition.name.text] = (*path, definition.name.text)
                 case Struct():

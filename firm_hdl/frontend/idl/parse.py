@@ -30,7 +30,6 @@ from firm_hdl.frontend.idl.tree import (
     LiteralSyntax,
     Member,
     Module,
-    Name,
     ScopedName,
     SequenceType,
     StringType,
@@ -38,6 +37,7 @@ from firm_hdl.frontend.idl.tree import (
     Typedef,
     Unary,
 )
+from firm_hdl.frontend.syntax import NameSyntax
 
 __all__ = ["idl_tree", "parse_file"]
 
@@ -84,15 +84,12 @@ def parse_file(source: Source) -> FileSyntax | Diagnostic:
     try:
         for token in parser.iter_parse():
             if len(parser.parser_state.state_stack) > _MOST_NESTED:
-                return Diagnostic(message="this is nested too deeply", span=_span(source, token))
+                return Diagnostic("this is nested too deeply", _span(source, token))
         tree = parser.feed_eof()  # type: ignore[no-untyped-call]
     except UnexpectedInput as error:
-        start, end, message = explain(
-            error,
-            source.text,
-            parser.accepts(),  # type: ignore[no-untyped-call]
-        )
-        return Diagnostic(message=message, span=Span(source=source, start=start, end=end))
+        accepts = parser.accepts()  # type: ignore[no-untyped-call]
+        start, end, message = explain(error, source.text, accepts)
+        return Diagnostic(message, Span(source, start, end))
     file = _Builder(source).transform(tree)
     assert isinstance(file, FileSyntax)
     return file
@@ -121,94 +118,75 @@ class _Builder(Transformer_NonRecursive[Token, Any]):
         self._source = source
 
     def start(self, meta: Meta, parts: list[Any]) -> FileSyntax:
-        return FileSyntax(source=self._source, definitions=tuple(parts))
+        return FileSyntax(self._source, tuple(parts))
 
     def include(self, meta: Meta, parts: list[Any]) -> Include:
-        (token,) = parts
-        path = token.removeprefix("#include").strip()[1:-1]
-        return Include(path=path, span=self._span(meta))
+        return Include(parts[0].removeprefix("#include").strip()[1:-1])
 
     def module(self, meta: Meta, parts: list[Any]) -> Module:
         annotations, name, *definitions = parts
-        return Module(
-            annotations=annotations, name=self._name(name), definitions=tuple(definitions)
-        )
+        return Module(annotations, self._name(name), tuple(definitions))
 
     def constant(self, meta: Meta, parts: list[Any]) -> Constant:
         annotations, type_, name, value = parts
-        return Constant(annotations=annotations, type=type_, name=self._name(name), value=value)
+        return Constant(annotations, type_, self._name(name), value)
 
     def typedef(self, meta: Meta, parts: list[Any]) -> Typedef:
-        type_, *declarators = parts
-        return Typedef(type=type_, declarators=tuple(declarators))
+        return Typedef(parts[0], tuple(parts[1:]))
 
     def struct(self, meta: Meta, parts: list[Any]) -> Struct:
         annotations, name, members = parts
-        return Struct(annotations=annotations, name=self._name(name), members=members)
+        return Struct(annotations, self._name(name), members)
 
     def body(self, meta: Meta, parts: list[Any]) -> tuple[Member, ...]:
         return tuple(parts)
 
     def member(self, meta: Meta, parts: list[Any]) -> Member:
         annotations, type_, *declarators = parts
-        return Member(annotations=annotations, type=type_, declarators=tuple(declarators))
+        return Member(annotations, type_, tuple(declarators))
 
     def enum(self, meta: Meta, parts: list[Any]) -> Enum:
-        annotations, name, *enumerators = parts
-        return Enum(annotations=annotations, name=self._name(name), enumerators=tuple(enumerators))
-
-    def enumerator(self, meta: Meta, parts: list[Any]) -> Name:
-        return self._name(parts[-1])
+        return Enum(self._name(parts[1]))
 
     def declarator(self, meta: Meta, parts: list[Any]) -> Declarator:
-        name, *sizes = parts
-        return Declarator(name=self._name(name), sizes=tuple(sizes))
+        return Declarator(self._name(parts[0]), tuple(parts[1:]))
 
     def annotations(self, meta: Meta, parts: list[Any]) -> tuple[Annotation, ...]:
         return tuple(parts)
 
     def annotation(self, meta: Meta, parts: list[Any]) -> Annotation:
         name, *arguments = parts
-        return Annotation(
-            name=name,
-            arguments=tuple(a for a in arguments if a is not None),
-            span=self._span(meta),
-        )
+        return Annotation(name, tuple(a for a in arguments if a is not None), self._span(meta))
 
     def argument(self, meta: Meta, parts: list[Any]) -> tuple[None, Expression]:
         return None, parts[0]
 
-    def named_argument(self, meta: Meta, parts: list[Any]) -> tuple[Name, Expression]:
-        name, value = parts
-        return self._name(name), value
+    def named_argument(self, meta: Meta, parts: list[Any]) -> tuple[NameSyntax, Expression]:
+        return self._name(parts[0]), parts[1]
 
     def basic_type(self, meta: Meta, parts: list[Any]) -> BasicType:
         words = " ".join(part for part in parts if part)
-        return BasicType(name=_ROS_NAMES.get(words, words), span=self._span(meta))
+        return BasicType(_ROS_NAMES.get(words, words), self._span(meta))
 
     def sequence_type(self, meta: Meta, parts: list[Any]) -> SequenceType:
         element, bound = parts
-        return SequenceType(element=element, bound=bound, span=self._span(meta))
+        return SequenceType(element, bound, self._span(meta))
 
     def string_type(self, meta: Meta, parts: list[Any]) -> StringType:
         word, bound = parts
-        return StringType(wide=word == "wstring", bound=bound, span=self._span(meta))
+        return StringType(word == "wstring", bound, self._span(meta))
 
     def fixed_type(self, meta: Meta, parts: list[Any]) -> FixedType:
-        return FixedType(span=self._span(meta))
+        return FixedType(self._span(meta))
 
     fixed_constant = fixed_type
 
     def scoped_name(self, meta: Meta, parts: list[Any]) -> ScopedName:
         words = tuple(str(part) for part in parts if part is not None and part != "::")
-        return ScopedName(parts=words, is_absolute=parts[0] is not None, span=self._span(meta))
+        return ScopedName(words, parts[0] is not None, self._span(meta))
 
     def chain(self, meta: Meta, parts: list[Any]) -> Chain:
-        return Chain(
-            operands=tuple(parts[::2]),
-            operators=tuple(map(str, parts[1::2])),
-            span=self._span(meta),
-        )
+        return Chain(tuple(parts[::2]), tuple(map(str, parts[1::2])), self._span(meta))
 
     def left(self, meta: Meta, parts: list[Any]) -> str:
         return self._source.text[meta.start_pos : meta.end_pos]
@@ -217,23 +195,19 @@ class _Builder(Transformer_NonRecursive[Token, Any]):
 
     def unary(self, meta: Meta, parts: list[Any]) -> Unary:
         operator, operand = parts
-        return Unary(operator=str(operator), operand=operand, span=self._span(meta))
+        return Unary(str(operator), operand, self._span(meta))
 
     def literal(self, meta: Meta, parts: list[Any]) -> LiteralSyntax:
-        return LiteralSyntax(
-            kind=_LITERALS[parts[0].type],
-            parts=tuple(map(str, parts)),
-            text=self._source.text[meta.start_pos : meta.end_pos],
-            span=self._span(meta),
-        )
+        kind = _LITERALS[parts[0].type]
+        return LiteralSyntax(kind, tuple(map(str, parts)), self._span(meta))
 
-    def _name(self, token: Token) -> Name:
-        return Name(text=str(token), span=_span(self._source, token))
+    def _name(self, token: Token) -> NameSyntax:
+        return NameSyntax(str(token), _span(self._source, token))
 
     def _span(self, meta: Meta) -> Span:
-        return Span(source=self._source, start=meta.start_pos, end=meta.end_pos)
+        return Span(self._source, meta.start_pos, meta.end_pos)
 
 
 def _span(source: Source, token: Token) -> Span:
     assert token.start_pos is not None and token.end_pos is not None
-    return Span(source=source, start=token.start_pos, end=token.end_pos)
+    return Span(source, token.start_pos, token.end_pos)

@@ -100,7 +100,7 @@ def read_idl(
     wrong = list(dict.fromkeys(wrong))
     if len(wrong) > MAX_DIAGNOSTICS:
         del wrong[MAX_DIAGNOSTICS:]
-        wrong.append(Diagnostic(message="too many errors; the others are not listed"))
+        wrong.append(Diagnostic("too many errors; the others are not listed"))
     return messages, wrong
 
 
@@ -156,15 +156,14 @@ class _Reader:
     def _constant(self, node: Constant, path: Path) -> None:
         """Declare a constant, and keep it for the struct to which it belongs."""
         full = (*path, node.name.text)
-        name = NameSyntax(text=node.name.text, span=node.name.span)
+        name = node.name
         self.wrong += _refusals(node.annotations)
         if not path:
-            message = "a constant must be declared in a module"
-            self.wrong.append(Diagnostic(message=message, span=name.span))
+            self.wrong.append(Diagnostic("a constant must be declared in a module", name.span))
         if full in self._spans:
             line = self._spans[full].line
             message = f"constant '{name.text}' is already declared in line {line}"
-            self.wrong.append(Diagnostic(message=message, span=name.span))
+            self.wrong.append(Diagnostic(message, name.span))
             return
         self._spans[full] = name.span
         try:
@@ -211,20 +210,12 @@ class _Reader:
             case _:
                 message = "the type of a constant must be a builtin one"
                 raise IdlError(message, node.type.span)
-        return TypeSyntax(
-            package=None,
-            name=name,
-            is_builtin=True,
-            bound=None,
-            array="one",
-            size=None,
-            span=node.type.span,
-        )
+        return TypeSyntax(name=name, span=node.type.span)
 
     def _typedef(self, node: Typedef) -> None:
         for declarator in node.declarators[1:]:
             message = f"a typedef declares one name in ROS 2; '{declarator.name.text}' is too many"
-            self.wrong.append(Diagnostic(message=message, span=declarator.name.span))
+            self.wrong.append(Diagnostic(message, declarator.name.span))
 
     def _check_alias(self, node: Typedef) -> None:
         """Check a typedef even if no member uses it, except for the names in it, as rosidl does."""
@@ -272,7 +263,7 @@ class _Reader:
                     f"'{name.text}' follows array '{array.name.text}', and ROS 2 gives both the "
                     "same size; declare it in a line of its own"
                 )
-                self.wrong.append(Diagnostic(message=message, span=name.span))
+                self.wrong.append(Diagnostic(message, name.span))
                 return
             if declarator.sizes:
                 array = declarator
@@ -285,13 +276,7 @@ class _Reader:
                     return
                 known[is_array] = type_, self._default(node, type_, path, struct)
             type_, default = known[is_array]
-            yield FieldSyntax(
-                type=type_,
-                name=NameSyntax(text=name.text, span=name.span),
-                default=default,
-                comment=comment,
-                unit=unit,
-            )
+            yield FieldSyntax(type=type_, name=name, default=default, comment=comment, unit=unit)
 
     def _default(
         self, node: Member, type_: TypeSyntax, path: Path, struct: Struct
@@ -321,22 +306,22 @@ _KINDS: dict[str, Literal["integer", "float", "boolean", "text"]] = {
 def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iterator[Diagnostic]:
     """Check that a file declares one message, one service or one action."""
     if not structs:
-        start = Span(source=file.source, start=0, end=0)
-        yield Diagnostic(message="this file declares no struct", span=start)
+        start = Span(file.source, 0, 0)
+        yield Diagnostic("this file declares no struct", start)
         return
     for _, struct in structs[len(_DECLARED) :]:
         message = (
             "a file has one struct for a message, two for a service, three for an action; "
             f"'{struct.name.text}' is too many"
         )
-        yield Diagnostic(message=message, span=struct.name.span)
+        yield Diagnostic(message, struct.name.span)
     what, kind = _DECLARED[min(len(structs), len(_DECLARED))]
     suffixes = PARTS["ros2", kind]
     names = [struct.name.text for _, struct in structs]
     if len(structs) == 2 and not any(name.endswith(suffixes) for name in names):
         # Two structs with such names are two messages, not a service.
         message = f"'{names[1]}' is a second struct beside '{names[0]}'; one message per file"
-        yield Diagnostic(message=message, span=structs[1][1].name.span)
+        yield Diagnostic(message, structs[1][1].name.span)
         return
     first_path, first = structs[0]
     base = first.name.text.removesuffix(suffixes[0])
@@ -344,13 +329,13 @@ def _check_structs(file: FileSyntax, structs: list[tuple[Path, Struct]]) -> Iter
         name = struct.name.text
         if not name.endswith(suffix):
             message = f"'{name}' must end with '{suffix}', as the file declares {what}"
-            yield Diagnostic(message=message, span=struct.name.span)
+            yield Diagnostic(message, struct.name.span)
         elif name.removesuffix(suffix) != base and first.name.text.endswith(suffixes[0]):
             message = f"'{name}' must be called '{base}{suffix}', to match '{first.name.text}'"
-            yield Diagnostic(message=message, span=struct.name.span)
+            yield Diagnostic(message, struct.name.span)
         elif path != first_path:
             message = f"'{name}' must be in the same module as '{first.name.text}'"
-            yield Diagnostic(message=message, span=struct.name.span)
+            yield Diagnostic(message, struct.name.span)
 
 
 _REFUSED = ("optional", "mutable")
@@ -362,11 +347,10 @@ def _refusals(annotations: tuple[Annotation, ...]) -> Iterator[Diagnostic]:
         name = annotation.name.parts[0]
         values = [v for _, v in annotation.arguments if isinstance(v, ScopedName)]
         if name in _REFUSED:
-            message = f"annotation '@{name}' is not supported"
-            yield Diagnostic(message=message, span=annotation.span)
+            yield Diagnostic(f"annotation '@{name}' is not supported", annotation.span)
         elif name == "extensibility" and any(v.parts[-1] == "MUTABLE" for v in values):
             message = "annotation '@extensibility(MUTABLE)' is not supported"
-            yield Diagnostic(message=message, span=annotation.span)
+            yield Diagnostic(message, annotation.span)
 
 
 def _comment_of(annotations: tuple[Annotation, ...]) -> str:
@@ -464,14 +448,10 @@ def _list(value: Value, type_: TypeSyntax, span: Span) -> ListSyntax:
     position = 0
     while position < len(inside):
         match = _ITEM.match(inside, position)
-        if match is None:
+        if match is None or (element := _python_value(match["item"])) is None:
             raise _no_list(type_, span)
-        element = _python_value(match["item"], span)
-        if element is None:
-            raise _no_list(type_, span)
-        items.append(
-            ValueSyntax(value=fit(element, type_.name, span), text=match["item"], span=span)
-        )
+        fitting = fit(element, type_.name, span)
+        items.append(ValueSyntax(value=fitting, text=match["item"], span=span))
         position = match.end()
     return ListSyntax(items=tuple(items), span=span)
 
@@ -480,7 +460,7 @@ def _no_list(type_: TypeSyntax, span: Span) -> IdlError:
     return IdlError(f'expected a list of {type_.name} as a string, such as "(1, 2)"', span)
 
 
-def _python_value(text: str, span: Span) -> Value | None:
+def _python_value(text: str) -> Value | None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # Unknown escapes stay as they are, as in rosidl.
         try:

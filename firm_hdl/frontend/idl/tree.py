@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from firm_hdl.errors import Source, Span
+from firm_hdl.frontend.syntax import NameSyntax
 
 __all__ = [
     "Annotation",
@@ -28,7 +29,6 @@ __all__ = [
     "LiteralSyntax",
     "Member",
     "Module",
-    "Name",
     "ScopedName",
     "SequenceType",
     "StringType",
@@ -40,15 +40,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Name:
-    """An identifier."""
-
-    text: str
-    span: Span
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class ScopedName:
     """A reference, such as ``sensor_msgs::msg::Imu``.
 
@@ -66,25 +58,22 @@ class ScopedName:
         return ("::" if self.is_absolute else "") + "::".join(self.parts)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class LiteralSyntax:
     """A literal.
 
     Attributes
     ----------
-    text : str
-        The literal as written; for a string of several tokens, all of them.
     parts : tuple of str
         The tokens of the literal; only a string can have several.
     """
 
     kind: Literal["integer", "float", "fixed", "character", "boolean", "string", "wstring"]
     parts: tuple[str, ...]
-    text: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Unary:
     """A sign, or ``~``, in front of an operand."""
 
@@ -93,7 +82,7 @@ class Unary:
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Chain:
     """Operands joined by operators of one precedence, evaluated from the left.
 
@@ -108,22 +97,22 @@ class Chain:
 Expression: TypeAlias = "ScopedName | LiteralSyntax | Unary | Chain"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Annotation:
     """``@name``, ``@name(value)`` or ``@name(key=value, ...)``.
 
     Attributes
     ----------
-    arguments : tuple of (Name or None) and Expression
+    arguments : tuple of (NameSyntax or None) and Expression
         A value without a key has `None` for its name.
     """
 
     name: ScopedName
-    arguments: tuple[tuple[Name | None, Expression], ...]
+    arguments: tuple[tuple[NameSyntax | None, Expression], ...]
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class BasicType:
     """A type of fixed size.
 
@@ -137,7 +126,7 @@ class BasicType:
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class StringType:
     """``string`` or ``wstring``."""
 
@@ -146,7 +135,7 @@ class StringType:
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class SequenceType:
     """``sequence<element>`` or ``sequence<element, bound>``."""
 
@@ -155,7 +144,7 @@ class SequenceType:
     span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class FixedType:
     """``fixed<digits, scale>``, or ``fixed`` as the type of a constant."""
 
@@ -165,33 +154,32 @@ class FixedType:
 TypeNode: TypeAlias = "BasicType | StringType | SequenceType | FixedType | ScopedName"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Declarator:
     """A name and the dimensions that follow it."""
 
-    name: Name
+    name: NameSyntax
     sizes: tuple[Expression, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Include:
     """``#include "path"`` or ``#include <path>``."""
 
     path: str
-    span: Span
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Constant:
     """``const type name = value``."""
 
     annotations: tuple[Annotation, ...]
     type: TypeNode
-    name: Name
+    name: NameSyntax
     value: Expression
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Typedef:
     """``typedef type name, name``."""
 
@@ -199,16 +187,14 @@ class Typedef:
     declarators: tuple[Declarator, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Enum:
     """``enum name { ... }``."""
 
-    annotations: tuple[Annotation, ...]
-    name: Name
-    enumerators: tuple[Name, ...]
+    name: NameSyntax
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Member:
     """A line of a struct."""
 
@@ -217,28 +203,28 @@ class Member:
     declarators: tuple[Declarator, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Struct:
     """A struct; a forward declaration has `None` for members."""
 
     annotations: tuple[Annotation, ...]
-    name: Name
+    name: NameSyntax
     members: tuple[Member, ...] | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Module:
     """``module name { ... }``."""
 
     annotations: tuple[Annotation, ...]
-    name: Name
+    name: NameSyntax
     definitions: tuple[Definition, ...]
 
 
 Definition: TypeAlias = "Include | Constant | Typedef | Enum | Struct | Module"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class FileSyntax:
     """A whole file."""
 

@@ -6,12 +6,11 @@ array of arrays or of sequences. Here such a type is an error, because ROS 2 can
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from dataclasses import replace
 
 from firm_hdl.errors import Span
 from firm_hdl.frontend.explain import clip
-from firm_hdl.frontend.idl.names import Alias, Names, Path
+from firm_hdl.frontend.idl.names import Declared, Names, Path
 from firm_hdl.frontend.idl.tree import (
     Declarator,
     Expression,
@@ -27,7 +26,6 @@ from firm_hdl.frontend.idl.values import (
     UnknownNameError,
     evaluate,
 )
-from firm_hdl.frontend.names import Kind
 from firm_hdl.frontend.syntax import SizeSyntax, TypeSyntax
 from firm_hdl.wire.alignment import MAX_LENGTH
 
@@ -47,52 +45,13 @@ _FOREIGN = {
 _REFUSED = ("any", "map", "Object", "ValueBase")
 
 
-class _Shape(NamedTuple):
-    """A type, independent of the place where it is written."""
-
-    name: str
-    is_builtin: bool = True
-    package: str | None = None
-    kind: Kind | None = None
-    bound: SizeSyntax | None = None
-    array: Literal["one", "array", "sequence"] = "one"
-    size: SizeSyntax | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Layer:
-    """A type as written in one place: the type of a member, or of a typedef that it uses."""
-
-    type: TypeNode
-    declarator: Declarator
-    path: Path
-    struct: str | None = None
-
-    @property
-    def core(self) -> TypeNode:
-        """The type without the sequences around it."""
-        type_ = self.type
-        while isinstance(type_, SequenceType):
-            type_ = type_.element
-        return type_
-
-    @property
-    def sequences(self) -> list[SequenceType]:
-        """The sequences around the core, the inner one first."""
-        found = []
-        type_ = self.type
-        while isinstance(type_, SequenceType):
-            found.append(type_)
-            type_ = type_.element
-        return found[::-1]
-
-
 class Expander:
     """Expands types, each typedef once."""
 
     def __init__(self, names: Names) -> None:
         self._names = names
-        self._shapes: dict[str, _Shape | None] = {}
+        # Typedefs by name; `None` while one is expanded, or if it is wrong.
+        self._types: dict[str, TypeSyntax | None] = {}
 
     def member(
         self, type_: TypeNode, declarator: Declarator, path: Path, struct: str
@@ -104,51 +63,44 @@ class Expander:
         IdlError
             If the type is wrong; `AlreadyReportedError` if a typedef's error was raised before.
         """
-        layer = _Layer(type=type_, declarator=declarator, path=path, struct=struct)
-        return TypeSyntax(**self._expand([layer], {})._asdict(), span=type_.span)
+        declared = Declared(path, type_, declarator, struct)
+        return replace(self._expand(None, declared), span=type_.span)
 
     def alias(self, name: str) -> None:
         """Expand a typedef, whether it is used or not; raises as `member` does."""
-        if name not in self._shapes:
-            self._shapes[name] = None
-            self._expand([_layer_of(self._names.aliases[name])], {name: None})
+        if name not in self._types:
+            self._types[name] = None
+            self._expand(name, self._names.aliases[name])
 
-    def _expand(self, layers: list[_Layer], names: dict[str, None]) -> _Shape:
-        """Follow typedefs down to a type that is not a typedef, then apply the layers one by one.
+    def _expand(self, name: str | None, declared: Declared) -> TypeSyntax:
+        """Follow typedefs down to a type that is not a typedef, then apply them one by one.
 
         Parameters
         ----------
-        layers : list of _Layer
-            The type to expand.
-        names : dict of str to None
-            The typedefs of the last layers, in order.
+        name : str or None
+            That of the typedef to begin with; `None` for a member.
         """
-        shape: _Shape | None = None
-        while shape is None:
-            core = layers[-1].core
-            name = self._alias_name(core, layers[-1].path)
+        layers = {name: declared}
+        found: TypeSyntax | None = None
+        while found is None:
+            last = next(reversed(layers.values()))
+            name = self._alias_name(last.core, last.path)
             if name is None:
-                shape = self._element(core, layers[-1])
-            elif name in names:
-                raise IdlError(f"typedef '{name}' refers to itself", core.span)
-            elif name in self._shapes:
-                shape = self._shapes[name]
-                if shape is None:
-                    raise AlreadyReportedError(f"typedef '{name}' is wrong", core.span)
+                found = self._element(last.core, last)
+            elif name in layers:
+                raise IdlError(f"typedef '{name}' refers to itself", last.core.span)
+            elif name in self._types:
+                found = self._types[name]
+                if found is None:
+                    raise AlreadyReportedError(f"typedef '{name}' is wrong", last.core.span)
             else:
-                self._shapes[name] = None  # It stays `None` if there is an error below.
-                names[name] = None
-                layers.append(_layer_of(self._names.aliases[name]))
-        return self._apply(layers, [*names], shape)
-
-    def _apply(self, layers: list[_Layer], names: list[str], shape: _Shape) -> _Shape:
-        # The first layer may be a member. It has no typedef name, so pad the names with `None`.
-        padded = [None] * (len(layers) - len(names)) + names
-        for layer, name in zip(reversed(layers), reversed(padded), strict=True):
-            shape = self._wrap(layer, shape)
+                self._types[name] = None  # It stays `None` if there is an error below.
+                layers[name] = self._names.aliases[name]
+        for name, declared in reversed(layers.items()):
+            found = self._wrap(declared, found)
             if name is not None:
-                self._shapes[name] = shape
-        return shape
+                self._types[name] = found
+        return found
 
     def _alias_name(self, core: TypeNode, path: Path) -> str | None:
         if not isinstance(core, ScopedName):
@@ -160,27 +112,32 @@ class Expander:
         around = range(0 if core.is_absolute else len(path), -1, -1)
         full = [(*path[:depth], *core.parts) for depth in around]
         is_bare = len(core.parts) == 1 and not core.is_absolute
-        return core.parts[-1] if is_bare or _full_name(alias) in full else None
+        return (
+            core.parts[-1] if is_bare or (*alias.path, alias.declarator.name.text) in full else None
+        )
 
-    def _element(self, core: TypeNode, layer: _Layer) -> _Shape:
+    def _element(self, core: TypeNode, layer: Declared) -> TypeSyntax:
         match core:
             case StringType():
                 bound = None
                 if core.bound is not None:
                     bound = self._size(core.bound, layer, "bound of a string")
-                return _Shape("wstring" if core.wide else "string", bound=bound)
+                name = "wstring" if core.wide else "string"
+                return TypeSyntax(name=name, bound=bound, span=core.span)
             case ScopedName():
                 return self._reference(core)
             case FixedType():
                 raise IdlError("type 'fixed' is not supported", core.span)
         assert not isinstance(core, SequenceType)
-        return _Shape(core.name)
+        return TypeSyntax(name=core.name, span=core.span)
 
-    def _reference(self, name: ScopedName) -> _Shape:
+    def _reference(self, name: ScopedName) -> TypeSyntax:
         match name.parts:
             case [package, ("msg" | "srv" | "action") as kind, base]:
                 if self._names.enums.get(base) != name.parts:
-                    return _Shape(base, is_builtin=False, package=package, kind=kind)
+                    return TypeSyntax(
+                        package=package, name=base, is_builtin=False, kind=kind, span=name.span
+                    )
         raise UnknownNameError(self._explain(name), name.span)
 
     def _explain(self, name: ScopedName) -> str:
@@ -201,7 +158,7 @@ class Expander:
                 )
         return f"'{text}' is not a type; those of ROS are written 'package::msg::Name'"
 
-    def _wrap(self, layer: _Layer, shape: _Shape) -> _Shape:
+    def _wrap(self, layer: Declared, shape: TypeSyntax) -> TypeSyntax:
         for sequence in layer.sequences:
             if shape.array != "one":
                 message = f"a sequence of {shape.array}s is not supported"
@@ -209,7 +166,7 @@ class Expander:
             size = None
             if sequence.bound is not None:
                 size = self._size(sequence.bound, layer, "bound of a sequence")
-            shape = shape._replace(array="sequence", size=size)
+            shape = replace(shape, array="sequence", size=size)
         sizes = layer.declarator.sizes
         if not sizes:
             return shape
@@ -218,9 +175,9 @@ class Expander:
         if shape.array == "array" or len(sizes) > 1:
             raise IdlError("arrays of several dimensions are not supported", sizes[-1].span)
         size = self._size(sizes[0], layer, "length of an array")
-        return shape._replace(array="array", size=size)
+        return replace(shape, array="array", size=size)
 
-    def _size(self, expression: Expression, layer: _Layer, what: str) -> SizeSyntax:
+    def _size(self, expression: Expression, layer: Declared, what: str) -> SizeSyntax:
         value = evaluate(
             expression, lambda name: self._names.constant(name, layer.path, layer.struct), 32
         )
@@ -232,12 +189,4 @@ class Expander:
             raise IdlError(f"the {what} must be at least 1, not {value.value}", span)
         if value.value > MAX_LENGTH:
             raise IdlError(f"the {what} must be at most {MAX_LENGTH}", span)
-        return SizeSyntax(value=value.value, span=span)
-
-
-def _layer_of(alias: Alias) -> _Layer:
-    return _Layer(type=alias.type, declarator=alias.declarator, path=alias.path)
-
-
-def _full_name(alias: Alias) -> Path:
-    return (*alias.path, alias.declarator.name.text)
+        return SizeSyntax(value.value, span)

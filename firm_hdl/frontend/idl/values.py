@@ -40,7 +40,7 @@ class IdlError(Exception):
 
     def __init__(self, message: str, span: Span) -> None:
         super().__init__(message)
-        self.diagnostic = Diagnostic(message=message, span=span)
+        self.diagnostic = Diagnostic(message, span)
 
 
 class UnknownNameError(IdlError):

@@ -13,7 +13,7 @@ from amaranth.lib import wiring
 from firm_hdl.errors import UserError
 from firm_hdl.export.component import parts_of
 from firm_hdl.node.accelerator import accelerator_signature
-from firm_hdl.node.description import Description, Hdl
+from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
 from firm_hdl.node.hdl.records import (
     NO_FILES,
@@ -23,7 +23,7 @@ from firm_hdl.node.hdl.records import (
     record_ports,
     wrapped,
 )
-from firm_hdl.node.hdl.sources import read_sources, refused
+from firm_hdl.node.hdl.sources import Sources
 from firm_hdl.node.hdl.verilog import checked_verilog, preprocessed
 from firm_hdl.node.hdl.vhdl import checked_vhdl, verilog_of_vhdl
 
@@ -42,8 +42,8 @@ class HdlAccelerator(wiring.Component):
 
     Attributes
     ----------
-    sources : mapping of str to bytes
-        The files by name, in compile order.
+    sources : Sources
+        Its files.
     ports : tuple of AcceleratorPort
         The plain ports, of the entity or of the wrapper around it.
     generated : Generated
@@ -63,16 +63,14 @@ class HdlAccelerator(wiring.Component):
     """
 
     def __init__(self, description: Description):
-        assert description.hdl is not None
-        self.hdl: Hdl = description.hdl
-        self._description = description
-        self.sources: Mapping[str, bytes] = read_sources(description)
+        self.sources = Sources(description)
+        self.hdl = self.sources.hdl
         check = checked_vhdl if self.hdl.language == "vhdl" else checked_verilog
         if self.hdl.has_records:
-            found, self.generated = _with_records(description, self.sources, check)
+            found, self.generated = _with_records(self.sources, check)
         else:
             wanted = accelerator_ports(description)
-            found, self.generated = check(description, self.sources, wanted, {}), NO_FILES
+            found, self.generated = check(self.sources, wanted, {}), NO_FILES
         there = {port.name for port in found}
         self.ports: tuple[AcceleratorPort, ...] = tuple(
             port
@@ -97,7 +95,7 @@ class HdlAccelerator(wiring.Component):
             If the VHDL has something that cannot be translated.
         """
         if self.hdl.language == "vhdl":
-            text = verilog_of_vhdl(self._description, self.sources, self.ports, self.generated)
+            text = verilog_of_vhdl(self.sources, self.ports, self.generated)
             return {"accelerator.sv": text}
         suffix = "v" if self.hdl.language == "verilog" else "sv"
         return {f"accelerator.{suffix}": self._preprocessed[0]}
@@ -109,7 +107,7 @@ class HdlAccelerator(wiring.Component):
 
     @cached_property
     def _preprocessed(self) -> tuple[str, dict[str, bytes]]:
-        return preprocessed(self._description, self.generated)
+        return preprocessed(self.sources, self.generated)
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -126,18 +124,17 @@ class HdlAccelerator(wiring.Component):
 
 
 def _with_records(
-    description: Description, sources: Mapping[str, bytes], check: Callable[..., Any]
+    sources: Sources, check: Callable[..., Any]
 ) -> tuple[tuple[AcceleratorPort, ...], Generated]:
     """Check an entity with records as ports; return its ports, and the files around it."""
-    assert description.hdl is not None
-    language = description.hdl.language
+    description, language = sources.description, sources.hdl.language
     try:
         records = message_records(description, language)
     except UserError as error:
-        raise refused(description, str(error)) from None
+        raise sources.refused(str(error)) from None
     packages = generated_packages(records, language)
-    for file in sources:
+    for file in sources.files:
         if os.path.basename(file) in packages:
-            raise refused(description, f"firm-hdl adds '{file}' itself: leave it out")
-    found = check(description, sources, record_ports(description, language, records), packages)
+            raise sources.refused(f"firm-hdl adds '{file}' itself: leave it out")
+    found = check(sources, record_ports(description, language, records), packages)
     return found, wrapped(description, records, packages, found)

@@ -9,9 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.accelerator import HdlAccelerator
-from firm_hdl.node.hdl.sources import path_of, refused, text_of
+from firm_hdl.node.hdl.sources import text_of
 
 __all__ = ["AcceleratorFiles", "accelerator_files"]
 
@@ -85,7 +84,7 @@ class AcceleratorFiles:
         return found
 
 
-def accelerator_files(description: Description, accelerator: Any) -> AcceleratorFiles:
+def accelerator_files(accelerator: Any) -> AcceleratorFiles:
     """Return the files of an accelerator; none of one in Amaranth.
 
     Files keep their places towards each other, because those of Verilog include others by them.
@@ -98,10 +97,8 @@ def accelerator_files(description: Description, accelerator: Any) -> Accelerator
     if not isinstance(accelerator, HdlAccelerator):
         return AcceleratorFiles()
     language = accelerator.hdl.language
-    sources = {
-        os.path.abspath(path_of(description, file)): data
-        for file, data in accelerator.sources.items()
-    }
+    own = accelerator.sources
+    sources = {path: own.files[file] for path, file in own.names.items()}
     headers = accelerator.headers
     base = os.path.commonpath([os.path.dirname(path) for path in (*sources, *headers)])
     top = "vhdl/accelerator" if language == "vhdl" else "accelerator"
@@ -124,14 +121,14 @@ def accelerator_files(description: Description, accelerator: Any) -> Accelerator
     for header in headers:
         if any(os.path.isabs(name) and os.path.normpath(name) == header for name in included):
             message = f"a file includes '{header}' by an absolute path, which a copy does not have"
-            raise refused(description, message)
-        own = [
+            raise own.refused(message)
+        nearest = [
             folder
             for folder in folders
             if any(os.path.normpath(os.path.join(folder, name)) == header for name in included)
         ]
         # A name made by a macro is not among the names.
-        found[place(header)] = place(own[0] if own else os.path.dirname(header))
+        found[place(header)] = place(nearest[0] if nearest else os.path.dirname(header))
     generated = accelerator.generated
     around = "vhdl" if language == "vhdl" else "systemverilog"
     before, after = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Literal
 
 from firm_hdl.gateware.members import member_tree
@@ -12,7 +13,7 @@ from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
 from firm_hdl.plan import Leaf, build_plan
 from firm_hdl.wire import lay_out
 
-__all__ = ["AcceleratorStream", "accelerator_streams", "described", "members_text"]
+__all__ = ["AcceleratorStream", "accelerator_streams", "by_message", "described", "members_text"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,6 +79,15 @@ def _streams(description: Description) -> Iterator[AcceleratorStream]:
                 )
 
 
+def by_message(
+    description: Description,
+) -> Iterator[tuple[Topic, str, list[AcceleratorStream]]]:
+    """Yield topic and name of each message of an accelerator, with its streams."""
+    streams = accelerator_streams(description)
+    for (topic, message), group in groupby(streams, key=lambda each: (each.topic, each.message)):
+        yield topic, message, list(group)
+
+
 def described(leaf: Leaf) -> str:
     """Say what a field carries, for people."""
     if leaf.kind == "items":
@@ -91,14 +101,10 @@ def described(leaf: Leaf) -> str:
 
 def members_text(description: Description) -> str:
     """List the streams of an accelerator as a table of text, with a heading for each message."""
-    streams = accelerator_streams(description)
-    width = max(len(stream.member) for stream in streams)
+    width = max(len(stream.member) for stream in accelerator_streams(description))
     lines = []
-    before = None
-    for stream in streams:
-        if (stream.topic, stream.message) != before:
-            before = stream.topic, stream.message
-            verb = "take" if stream.direction == "in" else "offer"
-            lines += ["", f"{stream.topic.name}, {stream.message}: {verb}"]
-        lines.append(f"  {stream.member:<{width}}  {stream.type}")
+    for topic, message, streams in by_message(description):
+        verb = "take" if streams[0].direction == "in" else "offer"
+        lines += ["", f"{topic.name}, {message}: {verb}"]
+        lines += [f"  {stream.member:<{width}}  {stream.type}" for stream in streams]
     return "\n".join(lines[1:])

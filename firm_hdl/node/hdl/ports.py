@@ -10,11 +10,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from firm_hdl.export.component import ComponentPort
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
 from firm_hdl.node.top import node_ports
 
-__all__ = ["AcceleratorPort", "accelerator_ports"]
+__all__ = ["AcceleratorPort", "accelerator_ports", "outer_ports"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,19 +50,31 @@ class AcceleratorPort:
     type: str = ""
     parts: Mapping[str, int] = field(default_factory=dict)
 
+    @property
+    def vhdl_type(self) -> str:
+        """The type in VHDL."""
+        if self.type or self.width == 1:
+            return self.type or "std_logic"
+        return f"std_logic_vector({self.width - 1} downto 0)"
+
 
 def accelerator_ports(description: Description) -> tuple[AcceleratorPort, ...]:
     """List the ports: clock, reset, time, then those of the messages in the order of topics."""
     return tuple(_ports(description))
 
 
-def _ports(description: Description) -> Iterator[AcceleratorPort]:
-    yield AcceleratorPort(name="aclk", direction="in", width=1)
-    yield AcceleratorPort(name="aresetn", direction="in", width=1)
+def outer_ports(description: Description) -> tuple[ComponentPort, ...]:
+    """List the ports of the node if those of its messages came out of it."""
     node = Node(replace(description, accelerator="", hdl=None))
     # Only its names are needed.
     node._MustUse__used = True
-    for port in node_ports(node):
+    return node_ports(node)
+
+
+def _ports(description: Description) -> Iterator[AcceleratorPort]:
+    yield AcceleratorPort(name="aclk", direction="in", width=1)
+    yield AcceleratorPort(name="aresetn", direction="in", width=1)
+    for port in outer_ports(description):
         group = port.member.partition(".")[0]
         if group in ("time", "subscribe", "publish", "serve"):
             yield AcceleratorPort(

@@ -1,4 +1,3 @@
-# amaranth: UnusedElaboratable=no
 """Ports of an accelerator as records of VHDL, or as structs of SystemVerilog.
 
 The types are those of single converters, in the packages that these have. A wrapper with plain
@@ -8,7 +7,7 @@ ports goes around the entity, so that the node has the same instance as otherwis
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from firm_hdl.export.message_ports import RecordPort, message_ports
 from firm_hdl.export.systemverilog.package import shared_packages as struct_packages
@@ -20,10 +19,8 @@ from firm_hdl.export.vhdl.layer import shared_packages as record_packages
 from firm_hdl.export.vhdl.values import values_of
 from firm_hdl.export.vhdl.wrapper import Conversions, Core, entity_around
 from firm_hdl.node.description import Description
-from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
-from firm_hdl.node.node import Node
+from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports, outer_ports
 from firm_hdl.node.records import found_messages
-from firm_hdl.node.top import node_ports
 
 __all__ = [
     "NO_FILES",
@@ -88,17 +85,13 @@ def message_records(description: Description, language: str) -> list[MessageReco
     UserError
         If two types would have one package.
     """
-    node = Node(replace(description, accelerator="", hdl=None))
-    # Only its names are needed.
-    node._MustUse__used = True
     found = []
-    for port in message_ports(list(found_messages(description)), node_ports(node)):
-        is_vhdl = language == "vhdl"
+    is_vhdl = language == "vhdl"
+    for port in message_ports(list(found_messages(description)), outer_ports(description)):
         tree = port.tree() if is_vhdl else port.tree(WORDS)
         own = tree.package.name
-        found.append(
-            MessageRecord(port=port, tree=tree, package=own if is_vhdl else package_name(own))
-        )
+        package = own if is_vhdl else package_name(own)
+        found.append(MessageRecord(port=port, tree=tree, package=package))
     return found
 
 
@@ -216,12 +209,7 @@ def _vhdl(
         # What a conversion has as a signal is a port here.
         assignments += made.assignments
     lines = [
-        (
-            port.name,
-            f"{port.direction:3} "
-            + ("std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"),
-            f"{port.member or port.name}.",
-        )
+        (port.name, f"{port.direction:3} {port.vhdl_type}", f"{port.member or port.name}.")
         for port in plain
     ]
     core = Core(entity=own, names={})

@@ -7,14 +7,19 @@ Messages of a subscription go to the publication of the same type, if there is o
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TypeAlias
 
 from firm_hdl.errors import UserError
 from firm_hdl.files import write_new
 from firm_hdl.names.identifiers import identifier
 from firm_hdl.node.description import Description
-from firm_hdl.node.hdl.members import AcceleratorStream, accelerator_streams, described
+from firm_hdl.node.hdl.members import (
+    AcceleratorStream,
+    accelerator_streams,
+    by_message,
+    described,
+)
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
 from firm_hdl.node.hdl.records import message_records, record_ports
 
@@ -31,6 +36,9 @@ NEW_LANGUAGES = {
 
 RECORDS = {"vhdl": "records", "systemverilog": "structs"}
 """What a language calls the records that its ports may have."""
+
+_Row: TypeAlias = "tuple[AcceleratorPort | None, str]"
+"""A port with a comment, or a comment alone, as a declaration has them."""
 
 
 def new_accelerator(
@@ -81,13 +89,8 @@ def new_accelerator(
     else:
         file = hdl.files[-1] if hdl else f"{name}.{NEW_LANGUAGES[wanted]}"
         entity = hdl.entity if hdl else name
-        if with_records:
-            lines = _with_records(description, entity, wanted)
-        elif wanted == "vhdl":
-            lines = _vhdl(description, entity)
-        else:
-            lines = _verilog(description, entity, "wire" if wanted == "verilog" else "logic")
-        text = "".join(f"{line}\n" for line in lines)
+        write = _with_records if with_records else _plain
+        text = "".join(f"{line}\n" for line in write(description, entity, wanted))
         ports = f", ports: {RECORDS[wanted]}" if with_records else ""
         value = f"{{{wanted}: {file}, entity: {entity}{ports}}}"
     place = os.path.normpath(os.path.join(description.folder, file))
@@ -113,17 +116,6 @@ def _looped(description: Description) -> dict[str, AcceleratorStream]:
     return found
 
 
-def _by_message(
-    description: Description,
-) -> Iterator[tuple[str, list[AcceleratorStream]]]:
-    """Yield the streams of each message, with a line that names it."""
-    streams = accelerator_streams(description)
-    for (topic, message), group in groupby(streams, key=lambda each: (each.topic, each.message)):
-        members = list(group)
-        verb = "takes" if members[0].direction == "in" else "offers"
-        yield f"{verb} {topic.name}: {message}", members
-
-
 def _head(description: Description) -> list[str]:
     return [
         f"The accelerator of the node {description.node}.",
@@ -131,6 +123,11 @@ def _head(description: Description) -> list[str]:
         "valid must not wait for ready, and data stays while valid waits. All fields have to be",
         "taken, also those that are not used.",
     ]
+
+
+def _verb(streams: Sequence[AcceleratorStream]) -> str:
+    """Say what an accelerator does with a message, by its streams."""
+    return "takes" if streams[0].direction == "in" else "offers"
 
 
 def _assigned(
@@ -143,170 +140,132 @@ def _assigned(
     return "1" if last == "ready" else "0"
 
 
-def _outputs(
-    description: Description,
-) -> Iterator[tuple[str, list[tuple[AcceleratorPort, str]]]]:
-    loops = _looped(description)
-    for heading, streams in _by_message(description):
-        yield (
-            heading,
-            [
-                (port, _assigned(port, stream, loops.get(stream.member)))
-                for stream in streams
-                for port in stream.ports
-                if port.direction == "out"
-            ],
-        )
-
-
-def _rows(description: Description, mark: str) -> Iterator[tuple[AcceleratorPort | None, str]]:
-    """Yield ports with a comment, and comments alone, in the order of the declaration."""
-    ports = {port.name: port for port in accelerator_ports(description)}
-    yield ports["aclk"], "Clock; the rising edge is active."
-    yield ports["aresetn"], "Synchronous reset, active low."
-    for port in ports.values():
-        if port.is_optional:
-            yield (
-                port,
-                f"Time of the node: {port.member.partition('.')[2]}. Leave it out or use it.",
-            )
-    for heading, streams in _by_message(description):
-        yield None, f"{mark} It {heading}"
-        for stream in streams:
-            for port in stream.ports:
-                is_data = port.member.rpartition(".")[2] == "data"
-                yield port, stream.type if is_data else ""
-
-
-def _declared(
-    rows: Sequence[tuple[AcceleratorPort | None, str]], text: dict[str, str], end: str, mark: str
-) -> Iterator[str]:
-    """Yield the lines of a declaration of ports, whose last one has no separator."""
-    last = [port for port, _ in rows if port is not None][-1]
-    was_port = True
-    for port, comment in rows:
-        if port is None:
-            if was_port:
-                yield ""
-            yield f"    {comment}"
-            was_port = False
-            continue
-        was_port = True
-        line = f"    {text[port.name]}{'' if port is last else end}"
-        yield f"{line}  {mark} {comment}" if comment else line
-
-
-def _vhdl(description: Description, entity: str) -> Iterator[str]:
-    rows = list(_rows(description, "--"))
-    ports = [port for port, _ in rows if port is not None]
-    width = max(len(port.name) for port in ports)
-    text = {
-        port.name: f"{port.name:<{width}} : {port.direction:<3} "
-        + ("std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)")
-        for port in ports
-    }
-    yield from (f"-- {line}" for line in _head(description))
-    yield from ("library ieee;", "use ieee.std_logic_1164.all;", "use ieee.numeric_std.all;", "")
-    yield from (f"entity {entity} is", "  port (")
-    yield from _declared(rows, text, ";", "--")
-    yield from ("  );", "end entity;", "", f"architecture rtl of {entity} is", "begin")
-    for heading, outputs in _outputs(description):
-        yield from ("", f"  -- It {heading}")
-        for port, value in outputs:
-            if value in "01":
-                value = f"'{value}'" if port.width == 1 else f"(others => '{value}')"
-            yield f"  {port.name:<{width}} <= {value};"
-    yield from ("", "end architecture;")
-
-
-def _verilog(description: Description, entity: str, kind: str) -> Iterator[str]:
-    rows = list(_rows(description, "//"))
-    ports = [port for port, _ in rows if port is not None]
-    width = max(len(port.name) for port in ports)
-    text = {
-        port.name: f"{port.direction + 'put':<6} {kind} "
-        + f"{'signed ' if port.signed else ''}"
-        + ("" if port.width == 1 else f"[{port.width - 1}:0] ")
-        + port.name
-        for port in ports
-    }
-    yield from (f"// {line}" for line in _head(description))
-    yield f"module {entity} ("
-    yield from _declared(rows, text, ",", "//")
-    yield ");"
-    for heading, outputs in _outputs(description):
-        yield from ("", f"  // It {heading}")
-        for port, value in outputs:
-            if value in "01":
-                value = f"{port.width}'b{value}" if port.width == 1 else f"{port.width}'d{value}"
-            yield f"  assign {port.name:<{width}} = {value};"
-    yield from ("", "endmodule")
-
-
-def _with_records(description: Description, entity: str, language: str) -> Iterator[str]:
-    """Yield the lines of a file whose ports are records or structs."""
-    is_vhdl = language == "vhdl"
-    mark = "--" if is_vhdl else "//"
-    records = message_records(description, language)
-    ports = record_ports(description, language, records)
-    names = max(len(port.name) for port in ports)
-
-    def declared(port: AcceleratorPort) -> str:
-        if is_vhdl:
-            bits = f"std_logic_vector({port.width - 1} downto 0)"
-            kind = port.type or ("std_logic" if port.width == 1 else bits)
-            return f"{port.name:<{names}} : {port.direction:<3} {kind}"
-        bits = "logic" if port.width == 1 else f"logic [{port.width - 1}:0]"
-        return f"{port.direction + 'put':<6} {port.type or bits} {port.name}"
-
-    rows: list[tuple[AcceleratorPort | None, str]] = []
+def _plain_rows(ports: Iterable[AcceleratorPort]) -> Iterator[_Row]:
+    """Yield clock, reset and time, which are ports of no message."""
     about = {
         "aclk": "Clock; the rising edge is active.",
         "aresetn": "Synchronous reset, active low.",
     }
-    rows += [
-        (port, about.get(port.name, "Time of the node. Leave it out or use it."))
-        for port in ports
-        if not port.type
-    ]
-    topics = {f"{topic.kind}.{topic.port}": topic.name for topic in description.topics}
-    for each in records:
-        verb = "takes" if each.is_taken else "offers"
-        topic = topics[".".join(each.port.member.split(".")[:2])]
-        rows.append((None, f"{mark} It {verb} {topic}: {each.port.message.name}"))
-        for node in each.tree.root.leaves():
-            assert node.leaf is not None
-            what = described(each.port.plan.leaves[node.leaf])
-            rows.append((None, f"{mark}   {node.access}: {what}"))
-        rows += [(p, "") for p in ports if p.name in (each.port.name, each.port.ready)]
+    for port in ports:
+        if port.is_optional:
+            time = port.member.partition(".")[2]
+            yield port, f"Time of the node: {time}. Leave it out or use it."
+        elif port.name in about:
+            yield port, about[port.name]
+
+
+def _declaration(port: AcceleratorPort, language: str, width: int) -> str:
+    """Declare a port, with its name in `width` characters."""
+    if language == "vhdl":
+        return f"{port.name:<{width}} : {port.direction:<3} {port.vhdl_type}"
+    kind = "wire" if language == "verilog" else "logic"
+    kind += " signed" if port.signed else ""
+    kind += f" [{port.width - 1}:0]" if port.width > 1 else ""
+    return f"{port.direction + 'put':<6} {port.type or kind} {port.name}"
+
+
+def _file(
+    description: Description, entity: str, language: str, rows: Sequence[_Row], body: Iterable[str]
+) -> Iterator[str]:
+    """Yield the lines of a file: the ports in their order, with comments, and what is in it."""
+    is_vhdl = language == "vhdl"
+    mark, end = ("--", ";") if is_vhdl else ("//", ",")
     yield from (f"{mark} {line}" for line in _head(description))
     if is_vhdl:
         yield from ("library ieee;", "use ieee.std_logic_1164.all;", "use ieee.numeric_std.all;")
         yield from ("", f"entity {entity} is", "  port (")
     else:
         yield f"module {entity} ("
-    text = {port.name: declared(port) for port in ports}
-    yield from _declared(rows, text, ";" if is_vhdl else ",", mark)
+    ports = [port for port, _ in rows if port is not None]
+    width = max(len(port.name) for port in ports)
+    was_port = True
+    for port, comment in rows:
+        if port is None:
+            if was_port:
+                yield ""
+            yield f"    {mark} {comment}"
+        else:
+            # The last port has no separator.
+            line = f"    {_declaration(port, language, width)}{'' if port is ports[-1] else end}"
+            yield f"{line}  {mark} {comment}" if comment else line
+        was_port = port is not None
     if is_vhdl:
         yield from ("  );", "end entity;", "", f"architecture rtl of {entity} is", "begin")
     else:
         yield ");"
-    sign, start = ("<=", "  ") if is_vhdl else ("=", "  assign ")
+    yield from body
+    yield from ("", "end architecture;" if is_vhdl else "endmodule")
+
+
+def _plain(description: Description, entity: str, language: str) -> Iterator[str]:
+    """Yield the lines of a file whose ports are plain vectors."""
+    loops = _looped(description)
+    rows = list(_plain_rows(accelerator_ports(description)))
+    outputs: list[tuple[str, list[tuple[AcceleratorPort, str]]]] = []
+    for topic, message, streams in by_message(description):
+        heading = f"It {_verb(streams)} {topic.name}: {message}"
+        rows.append((None, heading))
+        values = []
+        for stream in streams:
+            for port in stream.ports:
+                is_data = port.member.rpartition(".")[2] == "data"
+                rows.append((port, stream.type if is_data else ""))
+                if port.direction == "out":
+                    values.append((port, _assigned(port, stream, loops.get(stream.member))))
+        outputs.append((heading, values))
+    width = max(len(port.name) for port, _ in rows if port is not None)
+
+    def tied(port: AcceleratorPort, value: str) -> str:
+        if value not in ("0", "1"):
+            return value
+        if language == "vhdl":
+            return f"'{value}'" if port.width == 1 else f"(others => '{value}')"
+        return f"{port.width}'{'b' if port.width == 1 else 'd'}{value}"
+
+    def body() -> Iterator[str]:
+        mark, start, sign = ("--", "", "<=") if language == "vhdl" else ("//", "assign ", "=")
+        for heading, values in outputs:
+            yield from ("", f"  {mark} {heading}")
+            for port, value in values:
+                yield f"  {start}{port.name:<{width}} {sign} {tied(port, value)};"
+
+    return _file(description, entity, language, rows, body())
+
+
+def _with_records(description: Description, entity: str, language: str) -> Iterator[str]:
+    """Yield the lines of a file whose ports are records or structs."""
+    records = message_records(description, language)
+    ports = record_ports(description, language, records)
+    rows = list(_plain_rows(ports))
+    topics = {f"{topic.kind}.{topic.port}": topic.name for topic in description.topics}
+    for each in records:
+        verb = "takes" if each.is_taken else "offers"
+        topic = topics[".".join(each.port.member.split(".")[:2])]
+        rows.append((None, f"It {verb} {topic}: {each.port.message.name}"))
+        for node in each.tree.root.leaves():
+            assert node.leaf is not None
+            what = described(each.port.plan.leaves[node.leaf])
+            rows.append((None, f"  {node.access}: {what}"))
+        rows += [(p, "") for p in ports if p.name in (each.port.name, each.port.ready)]
     by_member = {each.port.member: each for each in records}
     loops = {f"subscribe.{a.port}": f"publish.{b.port}" for a, b in description.loops()}
     loops |= {goes: came for came, goes in loops.items()}
-    yield ""
-    for each in records:
-        other = by_member.get(loops.get(each.port.member, ""))
-        place = f"{'work.' if is_vhdl else ''}{each.package}{'.' if is_vhdl else '::'}"
-        base = each.tree.package.base.upper()
-        if each.is_taken:
-            value = other.port.ready if other else f"{place}{base}_ALL_READY"
-            yield f"{start}{each.port.ready} {sign} {value};"
-        else:
-            value = other.port.name if other else f"{place}{base}_IDLE"
-            yield f"{start}{each.port.name} {sign} {value};"
-    yield from ("", "end architecture;" if is_vhdl else "endmodule")
+
+    def body() -> Iterator[str]:
+        start, sign, dot = ("work.", "<=", ".") if language == "vhdl" else ("", "=", "::")
+        assign = "" if language == "vhdl" else "assign "
+        yield ""
+        for each in records:
+            other = by_member.get(loops.get(each.port.member, ""))
+            constant = f"{start}{each.package}{dot}{each.tree.package.base.upper()}"
+            if each.is_taken:
+                name, value = each.port.ready, other and other.port.ready
+            else:
+                name, value = each.port.name, other and other.port.name
+            idle = f"{constant}_{'ALL_READY' if each.is_taken else 'IDLE'}"
+            yield f"  {assign}{name} {sign} {value or idle};"
+
+    return _file(description, entity, language, rows, body())
 
 
 def _amaranth(description: Description, name: str) -> Iterator[str]:
@@ -322,8 +281,9 @@ def _amaranth(description: Description, name: str) -> Iterator[str]:
     yield "        # A field is a stream with payload, valid and ready. All have to be taken.\n"
     yield "        # firm_hdl.accelerator has take_message and offer_message for whole messages.\n"
     yield "        # The time of the node is in self.time.sec and self.time.nanosec.\n"
-    for heading, streams in _by_message(description):
-        yield f"\n        # It {heading}\n        m.d.comb += [\n"
+    for topic, message, streams in by_message(description):
+        yield f"\n        # It {_verb(streams)} {topic.name}: {message}\n"
+        yield "        m.d.comb += [\n"
         for stream in streams:
             member, other = f"self.{stream.member}", loops.get(stream.member)
             yield f"            # {stream.type}\n"

@@ -11,18 +11,7 @@ from firm_hdl.files import read_file
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
 
-__all__ = [
-    "check_ports",
-    "listed",
-    "path_of",
-    "places_of",
-    "problems_of",
-    "read_sources",
-    "refused",
-    "refused_twice",
-    "span_of",
-    "text_of",
-]
+__all__ = ["Sources", "listed", "text_of"]
 
 MOST_BYTES = 1 << 24
 
@@ -32,40 +21,196 @@ _MOST_NAMED = 8
 _LIBRARY = re.compile(r"^\S*/ieee\w*/(\w+?)(?:-body)?\.vhdl:\d+:\d+:", re.MULTILINE)
 
 
-def path_of(description: Description, file: str) -> str:
-    """Return the path of a file, which is relative to the description."""
-    return os.path.normpath(os.path.join(description.folder, file))
+class Sources:
+    """The files of an accelerator, and the errors of tools in them.
 
+    Parameters
+    ----------
+    description : Description
+        With `hdl`.
 
-def read_sources(description: Description) -> dict[str, bytes]:
-    """Read the files of an accelerator, by their names in the description.
+    Attributes
+    ----------
+    hdl : Hdl
+    files : dict of str to bytes
+        By their names in the description, in compile order.
+    names : dict of str to str
+        These names by absolute paths.
 
     Raises
     ------
     DefinitionError
         At the name of each file in the description that cannot be read.
     """
-    assert description.hdl is not None
-    sources: dict[str, bytes] = {}
-    problems = []
-    for file in description.hdl.files:
-        path = path_of(description, file)
-        try:
-            sources[file] = read_file(path, MOST_BYTES)
-        except OSError as error:
-            message = f"cannot read '{path}': {error.strerror or error}"
-            problems.append(Diagnostic(message=message, span=description.accelerator_span))
-    if problems:
-        raise DefinitionError(problems)
-    return sources
 
+    def __init__(self, description: Description):
+        assert description.hdl is not None
+        self.description, self.hdl = description, description.hdl
+        self.files: dict[str, bytes] = {}
+        self.names = {os.path.abspath(self.path_of(file)): file for file in self.hdl.files}
+        problems = []
+        for file in self.hdl.files:
+            try:
+                self.files[file] = read_file(self.path_of(file), MOST_BYTES)
+            except OSError as error:
+                message = f"cannot read '{self.path_of(file)}': {error.strerror or error}"
+                problems.append(Diagnostic(message, description.accelerator_span))
+        if problems:
+            raise DefinitionError(problems)
 
-def refused_twice(description: Description, unit: str, first: str, second: str) -> DefinitionError:
-    """Return the error of a unit that two files declare, by the paths that a tool printed."""
-    assert description.hdl is not None
-    names = {os.path.abspath(path_of(description, file)): file for file in description.hdl.files}
-    files = " and ".join(repr(names.get(os.path.abspath(each), each)) for each in (first, second))
-    return refused(description, f"{unit} is declared in two files, {files}")
+    def path_of(self, file: str) -> str:
+        """Return the path of a file, which is relative to the description."""
+        return os.path.normpath(os.path.join(self.description.folder, file))
+
+    def name_of(self, path: str) -> str | None:
+        """Return the name of a file by the path that a tool printed."""
+        return self.names.get(os.path.abspath(path))
+
+    def refused(self, message: str) -> DefinitionError:
+        """Return an error at the accelerator in the description."""
+        return DefinitionError.of(message, self.description.accelerator_span)
+
+    def refused_twice(self, unit: str, *paths: str) -> DefinitionError:
+        """Return the error of a unit that two files declare, by the paths that a tool printed."""
+        files = " and ".join(repr(self.name_of(path) or path) for path in paths)
+        return self.refused(f"{unit} is declared in two files, {files}")
+
+    def problems_of(self, said: str, tool: str) -> DefinitionError:
+        """Return the errors that a tool found in the user's files, each at its place.
+
+        Parameters
+        ----------
+        said : str
+            Output of the tool, which got absolute paths.
+        """
+        problems: list[Diagnostic] = []
+        places: set[tuple[str, str]] = set()
+        for line in said.splitlines():
+            found = _PLACE.match(line)
+            if not found or "%Warning" in line or found[4].startswith(("warning:", "note:")):
+                continue
+            file = self.name_of(found[1])
+            if file is None:
+                continue
+            span = self.span_of(file, int(found[2]), int(found[3] or 1))
+            hint = ""
+            if not self.hdl.has_records and _PACKAGE.search(found[4]):
+                hint = "; with 'ports: records' in its description, firm-hdl adds the packages"
+            problem = Diagnostic(f"{found[4]}{hint}", span)
+            # Verilator goes on with a constant in place of what it has not found.
+            follows = found[4].startswith("Unsupported: Member call on object")
+            if problem not in problems and not (follows and (file, found[2]) in places):
+                problems.append(problem)
+                places.add((file, found[2]))
+        if problems:
+            return DefinitionError(problems)
+        if library := _LIBRARY.search(said):
+            # `float_pkg` is an instance of `float_generic_pkg`.
+            package = library[1].replace("_generic", "")
+            users = [f for f, data in self.files.items() if package in text_of(data).lower()]
+            where = f", used in {listed(users)}" if users else ""
+            return self.refused(f"{tool} cannot synthesize ieee's package '{package}'{where}")
+        lines = [line for line in said.splitlines() if line.strip()]
+        return self.refused(f"{tool} failed: {' '.join(lines[:3])[:400]}")
+
+    def span_of(self, file: str, row: int, column: int) -> Span:
+        """Return the word at a place in a file that a tool printed, both counted from 1."""
+        text = text_of(self.files[file])
+        starts = [0, *(match.end() for match in re.finditer("\n", text))]
+        start = min(starts[min(row, len(starts)) - 1] + max(0, column - 1), len(text))
+        word = re.compile(r"\w+|.?").match(text, start)
+        source = Source(name=self.path_of(file), text=text)
+        return Span(source, start, word.end() if word else start)
+
+    def places_of(self, names: Iterable[str]) -> dict[str, Span]:
+        """Return where the entity declares its ports; at ``""``, the name of the entity itself.
+
+        Parameters
+        ----------
+        names : iterable of str
+            What is not found is not in the result.
+        """
+        is_vhdl = self.hdl.language == "vhdl"
+        ignored = re.compile(r"--[^\n]*|/\*.*?\*/" if is_vhdl else r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+        flags = re.IGNORECASE if is_vhdl else 0
+        entity = re.escape(self.hdl.entity)
+        head = (
+            rf"\bentity\s+({entity})\s+is\b" if is_vhdl else rf"\bmodule\s+(?:\w+\s+)?({entity})\b"
+        )
+        found: dict[str, Span] = {}
+        for file, data in self.files.items():
+            source = Source(name=self.path_of(file), text=text_of(data))
+            # As long as the text.
+            code = ignored.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
+            if (unit := re.search(head, code, flags)) is None:
+                continue
+            found[""] = Span(source, unit.start(1), unit.end(1))
+            for name in filter(None, names):
+                if at := re.compile(rf"\b{re.escape(name)}\b", flags).search(code, unit.end()):
+                    found[name] = Span(source, at.start(), at.end())
+            break
+        return found
+
+    def check_ports(
+        self,
+        found: Sequence[AcceleratorPort],
+        wanted: Sequence[AcceleratorPort],
+        more_problems: Mapping[str, str] | None = None,
+    ) -> tuple[AcceleratorPort, ...]:
+        """Compare the ports of an entity with those that it must have.
+
+        Parameters
+        ----------
+        more_problems : mapping of str to str
+            What else is wrong with ports, by their names.
+
+        Returns
+        -------
+        tuple of AcceleratorPort
+            Those of `wanted` that the entity has.
+
+        Raises
+        ------
+        DefinitionError
+            Each problem by itself, at the port, or else at the entity.
+        """
+        entity = self.hdl.entity
+        ignores_case = self.hdl.language == "vhdl"
+
+        def key(name: str) -> str:
+            return name.lower() if ignores_case else name
+
+        there = {key(port.name): port for port in found}
+        needed = {key(port.name): port for port in wanted}
+        problems = []
+        missing = [p.name for k, p in needed.items() if k not in there and not p.is_optional]
+        more = [port.name for name, port in there.items() if name not in needed]
+        if missing:
+            problems.append(("", f"'{entity}' has no port {listed(missing)}"))
+        if more:
+            message = f"the description has no member for the port {listed(more)} of '{entity}'"
+            problems.append((more[0], message))
+        for name, port in there.items():
+            want = needed.get(name)
+            if want is None:
+                continue
+            named = f"port '{port.name}' of '{entity}'"
+            if port.direction != want.direction:
+                problems.append((port.name, f"{named} must be an {want.direction}put"))
+            if port.width != want.width:
+                has = f"{_bits(want.width)}, not {port.width}"
+                kind = f"the type {want.type}, which has {has}" if want.type else has
+                problems.append((port.name, f"{named} must have {kind}"))
+        problems += [
+            (name, text) for name, text in (more_problems or {}).items() if key(name) in there
+        ]
+        if problems:
+            places = self.places_of([name for name, _ in problems])
+            else_at = places.get("", self.description.accelerator_span)
+            raise DefinitionError(
+                [Diagnostic(text, places.get(name, else_at)) for name, text in problems]
+            )
+        return tuple(port for name, port in needed.items() if name in there)
 
 
 def text_of(data: bytes) -> str:
@@ -74,159 +219,6 @@ def text_of(data: bytes) -> str:
         return data.decode()
     except UnicodeDecodeError:
         return data.decode("latin-1")
-
-
-def refused(description: Description, message: str) -> DefinitionError:
-    """Return an error at the accelerator in the description."""
-    return DefinitionError([Diagnostic(message=message, span=description.accelerator_span)])
-
-
-def problems_of(
-    description: Description, said: str, sources: Mapping[str, bytes], tool: str
-) -> DefinitionError:
-    """Return the errors that a tool found in the user's files, each at its place.
-
-    Parameters
-    ----------
-    said : str
-        Output of the tool, which got absolute paths.
-    sources : mapping of str to bytes
-        The files by name.
-    """
-    assert description.hdl is not None
-    by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
-    problems: list[Diagnostic] = []
-    places: set[tuple[str, str]] = set()
-    for line in said.splitlines():
-        found = _PLACE.match(line)
-        if not found or "%Warning" in line or found[4].startswith(("warning:", "note:")):
-            continue
-        file = by_path.get(os.path.abspath(found[1]))
-        if file is None:
-            continue
-        span = span_of(description, file, sources[file], int(found[2]), int(found[3] or 1))
-        hint = ""
-        if not description.hdl.has_records and _PACKAGE.search(found[4]):
-            hint = "; with 'ports: records' in its description, firm-hdl adds the packages"
-        problem = Diagnostic(message=f"{found[4]}{hint}", span=span)
-        # Verilator goes on with a constant in place of what it has not found.
-        follows = found[4].startswith("Unsupported: Member call on object")
-        if problem not in problems and not (follows and (file, found[2]) in places):
-            problems.append(problem)
-            places.add((file, found[2]))
-    if problems:
-        return DefinitionError(problems)
-    if library := _LIBRARY.search(said):
-        # `float_pkg` is an instance of `float_generic_pkg`.
-        package = library[1].replace("_generic", "")
-        users = [f for f, data in sources.items() if package in text_of(data).lower()]
-        where = f", used in {listed(users)}" if users else ""
-        return refused(description, f"{tool} cannot synthesize ieee's package '{package}'{where}")
-    lines = [line for line in said.splitlines() if line.strip()]
-    return refused(description, f"{tool} failed: {' '.join(lines[:3])[:400]}")
-
-
-def span_of(description: Description, file: str, data: bytes, row: int, column: int) -> Span:
-    """Return the word at a place in a file that a tool printed, both counted from 1."""
-    text = text_of(data)
-    starts = [0, *(match.end() for match in re.finditer("\n", text))]
-    start = min(starts[min(row, len(starts)) - 1] + max(0, column - 1), len(text))
-    word = re.compile(r"\w+|.?").match(text, start)
-    source = Source(name=path_of(description, file), text=text)
-    return Span(source=source, start=start, end=word.end() if word else start)
-
-
-def places_of(
-    description: Description, sources: Mapping[str, bytes], names: Iterable[str]
-) -> dict[str, Span]:
-    """Return where the entity declares its ports; at ``""``, the name of the entity itself.
-
-    Parameters
-    ----------
-    names : iterable of str
-        What is not found is not in the result.
-    """
-    assert description.hdl is not None
-    is_vhdl = description.hdl.language == "vhdl"
-    ignored = re.compile(r"--[^\n]*|/\*.*?\*/" if is_vhdl else r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-    flags = re.IGNORECASE if is_vhdl else 0
-    entity = re.escape(description.hdl.entity)
-    head = rf"\bentity\s+({entity})\s+is\b" if is_vhdl else rf"\bmodule\s+(?:\w+\s+)?({entity})\b"
-    found: dict[str, Span] = {}
-    for file, data in sources.items():
-        source = Source(name=path_of(description, file), text=text_of(data))
-        # As long as the text.
-        code = ignored.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source.text)
-        if (unit := re.search(head, code, flags)) is None:
-            continue
-        found[""] = Span(source=source, start=unit.start(1), end=unit.end(1))
-        for name in filter(None, names):
-            if at := re.compile(rf"\b{re.escape(name)}\b", flags).search(code, unit.end()):
-                found[name] = Span(source=source, start=at.start(), end=at.end())
-        break
-    return found
-
-
-def check_ports(
-    description: Description,
-    sources: Mapping[str, bytes],
-    found: Sequence[AcceleratorPort],
-    wanted: Sequence[AcceleratorPort],
-    more_problems: Mapping[str, str] | None = None,
-) -> tuple[AcceleratorPort, ...]:
-    """Compare the ports of an entity with those that it must have.
-
-    Parameters
-    ----------
-    more_problems : mapping of str to str
-        What else is wrong with ports, by their names.
-
-    Returns
-    -------
-    tuple of AcceleratorPort
-        Those of `wanted` that the entity has.
-
-    Raises
-    ------
-    DefinitionError
-        Each problem by itself, at the port, or else at the entity.
-    """
-    assert description.hdl is not None
-    entity = description.hdl.entity
-    ignores_case = description.hdl.language == "vhdl"
-
-    def key(name: str) -> str:
-        return name.lower() if ignores_case else name
-
-    there = {key(port.name): port for port in found}
-    needed = {key(port.name): port for port in wanted}
-    problems = []
-    missing = [p.name for k, p in needed.items() if k not in there and not p.is_optional]
-    more = [port.name for name, port in there.items() if name not in needed]
-    if missing:
-        problems.append(("", f"'{entity}' has no port {listed(missing)}"))
-    if more:
-        message = f"the description has no member for the port {listed(more)} of '{entity}'"
-        problems.append((more[0], message))
-    for name, port in there.items():
-        want = needed.get(name)
-        if want is None:
-            continue
-        named = f"port '{port.name}' of '{entity}'"
-        if port.direction != want.direction:
-            problems.append((port.name, f"{named} must be an {want.direction}put"))
-        if port.width != want.width:
-            has = f"{_bits(want.width)}, not {port.width}"
-            kind = f"the type {want.type}, which has {has}" if want.type else has
-            problems.append((port.name, f"{named} must have {kind}"))
-    problems += [(name, text) for name, text in (more_problems or {}).items() if key(name) in there]
-    if problems:
-        places = places_of(description, sources, [name for name, _ in problems])
-        else_at = places.get("", description.accelerator_span)
-        raise DefinitionError(
-            [Diagnostic(message=text, span=places.get(name, else_at)) for name, text in problems]
-        )
-    return tuple(port for name, port in needed.items() if name in there)
 
 
 def _bits(width: int) -> str:

@@ -16,18 +16,9 @@ from typing import Literal
 
 from firm_hdl.jobs import ToolError, run_tool
 from firm_hdl.jobs.programs import find_verilator
-from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort
 from firm_hdl.node.hdl.records import Generated
-from firm_hdl.node.hdl.sources import (
-    check_ports,
-    path_of,
-    places_of,
-    problems_of,
-    refused,
-    refused_twice,
-    span_of,
-)
+from firm_hdl.node.hdl.sources import Sources
 
 __all__ = ["checked_verilog", "preprocessed"]
 
@@ -53,25 +44,24 @@ _NO_MODULE = re.compile(r"(?:containing module|module reference): '([^']+)'")
 
 
 def checked_verilog(
-    description: Description,
-    sources: Mapping[str, bytes],
+    sources: Sources,
     wanted: Sequence[AcceleratorPort],
     packages: Mapping[str, str],
 ) -> tuple[AcceleratorPort, ...]:
     """Check files of Verilog or SystemVerilog, and the ports of the module, as `checked_vhdl`."""
     # Verilator compares nothing else while a port is not there.
     ports = list(wanted)
-    said, own, is_right = _lint(description, sources, ports, packages)
+    said, own, is_right = _lint(sources, ports, packages)
     errors = [line for line in said.splitlines() if "%Error" in line and _WRAPPER not in line]
     if any(_PLACED.match(line) and not _ASSIGNED.search(line) for line in errors):
         # Mistakes inside can be why ports are not there.
-        raise problems_of(description, said, sources, "Verilator")
+        raise sources.problems_of(said, "Verilator")
     while absent := {name for names in _NOT_FOUND.findall(said) for name in names if name}:
         left = [port for port in ports if port.name not in absent]
         if left == ports:
             break
         ports = left
-        said, own, is_right = _lint(description, sources, ports, packages)
+        said, own, is_right = _lint(sources, ports, packages)
     # What Verilator has not said is as wanted.
     found = {port.name: port for port in ports}
     for name in _MISSING.findall(said):
@@ -83,30 +73,27 @@ def checked_verilog(
         if name in found:
             other: Literal["in", "out"] = "out" if found[name].direction == "in" else "in"
             found[name] = replace(found[name], direction=other)
-    problems = _own_problems(description, sources, found, own)
-    check_ports(description, sources, list(found.values()), wanted, problems)
+    problems = _own_problems(sources, found, own)
+    sources.check_ports(list(found.values()), wanted, problems)
     if is_right:
         return tuple(ports)
-    raise problems_of(description, said, sources, "Verilator")
+    raise sources.problems_of(said, "Verilator")
 
 
 def _own_problems(
-    description: Description,
-    sources: Mapping[str, bytes],
+    sources: Sources,
     ports: Mapping[str, AcceleratorPort],
     said: str,
 ) -> dict[str, str]:
     """Return what Verilator warns of at the ports of the module, by their names."""
-    assert description.hdl is not None
-    entity = description.hdl.entity
-    by_path = {os.path.abspath(path_of(description, file)): file for file in sources}
-    places = places_of(description, sources, ports)
+    entity = sources.hdl.entity
+    places = sources.places_of(ports)
     problems: dict[str, str] = {}
     for match in _OWN.finditer(said):
         path, row, column = match.group(*((2, 3, 4) if match[1] else (7, 8, 9)))
-        if (file := by_path.get(os.path.abspath(path))) is None:
+        if (file := sources.name_of(path)) is None:
             continue
-        at = span_of(description, file, sources[file], int(row), int(column))
+        at = sources.span_of(file, int(row), int(column))
         if match[1]:
             name, bits = match[5], match[6]
             is_here = name in ports and places.get(name) == at and ports[name].direction == "out"
@@ -128,25 +115,24 @@ def _own_problems(
     return problems
 
 
-def preprocessed(description: Description, generated: Generated) -> tuple[str, dict[str, bytes]]:
+def preprocessed(sources: Sources, generated: Generated) -> tuple[str, dict[str, bytes]]:
     """Return all files as one text, and the files that they include, by absolute path.
 
     Raises
     ------
     DefinitionError
     """
-    paths = _paths(description)
     with tempfile.TemporaryDirectory(prefix="firm_hdl-") as name:
         folder = Path(name)
         before, after = _written(generated.packages, folder), _written(generated.wrapper, folder)
         try:
-            command = [*_command(description), "-E", *before, *paths, *after]
+            command = [*_command(sources), "-E", *before, *sources.names, *after]
             text = run_tool(command, folder, with_errors=False)
         except ToolError as error:
-            raise problems_of(description, str(error), {}, "Verilator") from None
+            raise sources.problems_of(str(error), "Verilator") from None
     places = re.findall(r'^`line \d+ "([^"<]+)"', text, re.MULTILINE)
     more = {os.path.normpath(path): path for path in places if os.path.isfile(path)}
-    known = {*paths, *before, *after}
+    known = {*sources.names, *before, *after}
     return text, {name: Path(path).read_bytes() for name, path in more.items() if name not in known}
 
 
@@ -156,22 +142,15 @@ def _written(files: Mapping[str, str], folder: Path) -> list[str]:
     return [str(folder / file) for file in files]
 
 
-def _paths(description: Description) -> list[str]:
-    assert description.hdl is not None
-    return [os.path.abspath(path_of(description, file)) for file in description.hdl.files]
-
-
-def _command(description: Description) -> list[str]:
-    assert description.hdl is not None
-    folders = dict.fromkeys(os.path.dirname(path) for path in _paths(description))
-    language = "1364-2005" if description.hdl.language == "verilog" else "1800-2017"
+def _command(sources: Sources) -> list[str]:
+    folders = dict.fromkeys(os.path.dirname(path) for path in sources.names)
+    language = "1364-2005" if sources.hdl.language == "verilog" else "1800-2017"
     command = [*find_verilator("An accelerator in Verilog"), "--default-language", language]
     return [*command, *(f"-I{folder}" for folder in folders)]
 
 
 def _lint(
-    description: Description,
-    sources: Mapping[str, bytes],
+    sources: Sources,
     ports: Sequence[AcceleratorPort],
     packages: Mapping[str, str],
 ) -> tuple[str, str, bool]:
@@ -183,8 +162,7 @@ def _lint(
         What Verilator says on errors, and on the module around them; all that it says; and whether
         there is no error.
     """
-    assert description.hdl is not None
-    entity = description.hdl.entity
+    entity = sources.hdl.entity
     heads = [f"  {p.direction}put wire [{p.width - 1}:0] {p.name}" for p in ports]
     pins = [f"    .{port.name}({port.name})" for port in ports]
     text = [f"module {_WRAPPER} (", ",\n".join(heads), ");", f"  {entity} it ("]
@@ -193,9 +171,9 @@ def _lint(
         folder = Path(name)
         file = folder / f"{_WRAPPER}.v"
         file.write_text("\n".join(text), encoding="ascii")
-        command = [*_command(description), "--lint-only", "-Wall", "-Wno-fatal", "--no-timing"]
+        command = [*_command(sources), "--lint-only", "-Wall", "-Wno-fatal", "--no-timing"]
         command += ["-Wno-DECLFILENAME", "--top-module", _WRAPPER]
-        command += [*_written(packages, folder), *_paths(description), str(file)]
+        command += [*_written(packages, folder), *sources.names, str(file)]
         try:
             said, is_right = run_tool(command, folder), True
         except ToolError as error:
@@ -205,7 +183,7 @@ def _lint(
             if twice[1] == twice[3]:
                 continue
             # Verilator would take the first one; other tools refuse both.
-            raise refused_twice(description, f"'{twice[2]}'", twice[3], twice[1])
+            raise sources.refused_twice(f"'{twice[2]}'", twice[3], twice[1])
         # Most warnings of the user's own files are not ours; errors are.
         lines = [
             line
@@ -213,6 +191,6 @@ def _lint(
             if line.startswith("%") and ("%Error" in line or str(file) in line)
         ]
     if not is_right and entity in _NO_MODULE.findall("\n".join(lines)):
-        names = ", ".join(map(repr, sources))
-        raise refused(description, f"there is no module '{entity}' in {names}")
+        names = ", ".join(map(repr, sources.files))
+        raise sources.refused(f"there is no module '{entity}' in {names}")
     return "\n".join(lines), said, is_right

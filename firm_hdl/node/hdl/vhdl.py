@@ -21,19 +21,10 @@ from firm_hdl.equivalence.dump import Module, Net, parse_dump
 from firm_hdl.equivalence.vhdl_side import read_vhdl
 from firm_hdl.jobs import ToolError, run_tool
 from firm_hdl.jobs.programs import find_ghdl
-from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.netlist import verilog_of
 from firm_hdl.node.hdl.ports import AcceleratorPort
 from firm_hdl.node.hdl.records import NO_FILES, Generated
-from firm_hdl.node.hdl.sources import (
-    check_ports,
-    listed,
-    path_of,
-    places_of,
-    problems_of,
-    refused,
-    refused_twice,
-)
+from firm_hdl.node.hdl.sources import Sources, listed
 
 __all__ = ["checked_vhdl", "verilog_of_vhdl"]
 
@@ -43,8 +34,7 @@ _NO_ARCHITECTURE = re.compile(r'entity "[^"]+" has no architecture')
 
 
 def checked_vhdl(
-    description: Description,
-    sources: Mapping[str, bytes],
+    sources: Sources,
     wanted: Sequence[AcceleratorPort],
     packages: Mapping[str, str],
 ) -> tuple[AcceleratorPort, ...]:
@@ -66,19 +56,19 @@ def checked_vhdl(
         If the VHDL is wrong, cannot be synthesized, or has no such entity or other ports.
     ProgramMissingError
     """
-    entity = _entity(description)
+    entity = sources.hdl.entity
     files = Generated(entity=entity, packages=packages, wrapper={})
     with tempfile.TemporaryDirectory(prefix="firm_hdl-") as name:
         folder = Path(name)
-        dump = _dump(description, sources, folder, files)
+        dump = _dump(sources, folder, files)
         try:
             modules = parse_dump(dump)
         except ProofError as error:
-            raise refused(description, _reason(error)) from None
+            raise sources.refused(_reason(error)) from None
         # GHDL writes the outermost entity under its own name; those with generics under others.
         top = next((m for name, m in modules.items() if name.lower() == entity.lower()), None)
         if top is None or top.own is None:
-            raise refused(description, f"GHDL's netlist has no entity '{entity}'")
+            raise sources.refused(f"GHDL's netlist has no entity '{entity}'")
         both = {net for i in top.instances if i.kind == "$inout" for net in i.outputs.values()}
         problems: dict[str, str] = {}
         # The fields of a record are ports of their own, such as twist.linear, in order.
@@ -101,14 +91,14 @@ def checked_vhdl(
             if any(bits):
                 text = f"nothing drives {_named(name, bits, parts.get(name, {}))} of '{entity}'"
                 problems.setdefault(name, text)
-        for port in _ascending(description, sources, folder):
+        for port in _ascending(sources, folder):
             problems.setdefault(
                 port,
                 f"port '{port}' of '{entity}' has an ascending range, so its bit 0 would be the "
                 "highest one: write 'downto'",
             )
-        ports = check_ports(description, sources, list(found.values()), wanted, problems)
-        _check_types(description, sources, folder, ports)
+        ports = sources.check_ports(list(found.values()), wanted, problems)
+        _check_types(sources, folder, ports)
     return ports
 
 
@@ -148,12 +138,12 @@ def _undriven(module: Module, net: Net) -> list[bool]:
     return [False] * net.width
 
 
-def _ascending(description: Description, sources: Mapping[str, bytes], folder: Path) -> list[str]:
+def _ascending(sources: Sources, folder: Path) -> list[str]:
     """Return the ports of the entity that are vectors with ascending ranges.
 
     GHDL's netlist has no directions, but its syntax tree has, also those of subtypes.
     """
-    place = places_of(description, sources, ()).get("")
+    place = sources.places_of(()).get("")
     if place is None:
         return []
     command = [find_ghdl(), "--file-to-xml", "--std=08", f"--workdir={folder}"]
@@ -168,7 +158,7 @@ def _ascending(description: Description, sources: Mapping[str, bytes], folder: P
     except (ToolError, ElementTree.ParseError):
         # Other versions of GHDL may have no such tree.
         return []
-    entity = _entity(description).lower()
+    entity = sources.hdl.entity.lower()
     nodes = {node.get("id"): node for node in root.iter() if node.get("id")}
     found = []
     for unit in root.iter("library_unit"):
@@ -184,8 +174,7 @@ def _ascending(description: Description, sources: Mapping[str, bytes], folder: P
 
 
 def verilog_of_vhdl(
-    description: Description,
-    sources: Mapping[str, bytes],
+    sources: Sources,
     ports: Sequence[AcceleratorPort],
     generated: Generated = NO_FILES,
 ) -> str:
@@ -196,13 +185,13 @@ def verilog_of_vhdl(
     DefinitionError
         If the netlist has something that cannot be translated.
     """
-    entity = generated.entity or _entity(description)
+    entity = generated.entity or sources.hdl.entity
     with tempfile.TemporaryDirectory(prefix="firm_hdl-") as folder:
-        dump = _dump(description, sources, Path(folder), replace(generated, entity=entity))
+        dump = _dump(sources, Path(folder), replace(generated, entity=entity))
     try:
         circuit = read_vhdl(dump)
     except ProofError as error:
-        raise refused(description, _reason(error)) from None
+        raise sources.refused(_reason(error)) from None
     names = {port.name.lower(): port.name for port in ports}
     return verilog_of(circuit, name=entity, names=names)
 
@@ -214,60 +203,49 @@ def _reason(error: ProofError) -> str:
     return f"the VHDL cannot be simulated in a node: {reason}"
 
 
-def _entity(description: Description) -> str:
-    assert description.hdl is not None
-    return description.hdl.entity
-
-
-def _dump(
-    description: Description, sources: Mapping[str, bytes], folder: Path, files: Generated
-) -> str:
+def _dump(sources: Sources, folder: Path, files: Generated) -> str:
     """Analyse the files, and return GHDL's netlist of an entity."""
     ghdl = find_ghdl()
     options = ["--std=08", f"--workdir={folder}"]
     for file, text in {**files.packages, **files.wrapper}.items():
         (folder / file).write_text(text, encoding="utf-8")
-    own = [os.path.abspath(path_of(description, file)) for file in sources]
-    paths = [*files.packages, *own, *files.wrapper]
+    paths = [*files.packages, *sources.names, *files.wrapper]
     environment = {"LC_ALL": "C"}
     try:
         said = run_tool(
             [ghdl, "-a", *options, "-Wlibrary", *paths], folder, environment=environment
         )
     except ToolError as error:
-        raise problems_of(description, str(error), sources, "GHDL") from None
+        raise sources.problems_of(str(error), "GHDL") from None
     if twice := _TWICE.search(said):
         # GHDL would take the last one.
         unit = twice[2].replace('"', "'")
-        raise refused_twice(description, unit, twice[3], twice[1])
+        raise sources.refused_twice(unit, twice[3], twice[1])
     command = [ghdl, "--synth", *options, "-dm", "--out=dump", files.entity]
     try:
         return run_tool(command, folder, environment=environment, with_errors=False)
     except ToolError as error:
         said = str(error)
         if "cannot find entity" in said:
-            names = ", ".join(map(repr, sources))
-            raise refused(
-                description, f"there is no entity '{_entity(description)}' in {names}"
-            ) from None
+            names = ", ".join(map(repr, sources.files))
+            raise sources.refused(f"there is no entity '{sources.hdl.entity}' in {names}") from None
         if _NO_ARCHITECTURE.search(said):
-            message = f"entity '{_entity(description)}' has no architecture"
-            raise refused(description, message) from None
-        raise problems_of(description, said, sources, "GHDL") from None
+            message = f"entity '{sources.hdl.entity}' has no architecture"
+            raise sources.refused(message) from None
+        raise sources.problems_of(said, "GHDL") from None
 
 
 def _check_types(
-    description: Description,
-    sources: Mapping[str, bytes],
+    sources: Sources,
     folder: Path,
     ports: Sequence[AcceleratorPort],
 ) -> None:
     """Check that ports have the types that a component of the node's VHDL has."""
-    entity = _entity(description)
+    entity = sources.hdl.entity
     signals = [(f"s{n}", port) for n, port in enumerate(ports)]
     lines = ["library ieee;", "use ieee.std_logic_1164.all;", f"entity {_WRAPPER} is end entity;"]
     lines += [f"architecture check of {_WRAPPER} is"]
-    lines += [f"  signal {name} : {_type(port)};" for name, port in signals]
+    lines += [f"  signal {name} : {port.vhdl_type};" for name, port in signals]
     lines += ["begin", f"  it : entity work.{entity} port map ("]
     first = len(lines) + 1
     lines += [f"    {port.name} => {name}," for name, port in signals]
@@ -286,12 +264,7 @@ def _check_types(
             if 0 <= row < len(ports):
                 port = ports[row]
                 problems[port.name] = (
-                    f"port '{port.name}' of '{entity}' must have the type {_type(port)}"
+                    f"port '{port.name}' of '{entity}' must have the type {port.vhdl_type}"
                 )
-        check_ports(description, sources, ports, ports, problems)
-        raise refused(description, f"GHDL failed: {str(error)[:400]}") from None
-
-
-def _type(port: AcceleratorPort) -> str:
-    plain = "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
-    return port.type or plain
+        sources.check_ports(ports, ports, problems)
+        raise sources.refused(f"GHDL failed: {str(error)[:400]}") from None

@@ -469,7 +469,7 @@ def test_an_include_by_an_absolute_path_is_refused(written, tmp_path, verilator)
     accelerator = load_accelerator(description)
     accelerator._MustUse__used = True
     with pytest.raises(DefinitionError, match="by an absolute path"):
-        accelerator_files(description, accelerator)
+        accelerator_files(accelerator)
 
 
 # What a netlist of GHDL can have: memories, long constants, signed arithmetic, both edges.
