@@ -7,6 +7,7 @@ Run by `make`, with the folder of the converters: `python soc.py FOLDER`.
 """
 
 import argparse
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -117,7 +118,9 @@ def main():
     config.add_clocker("sys_clk", freq_hz=int(1e6))
     config.add_module("serial2console", "serial")
     builder = Builder(soc, output_dir=work / "build", compile_software=False)
-    builder.build(sim_config=config, interactive=False, verbose=False, opt_level="O0")
+    # Without a number of jobs, LiteX starts all compilers at once.
+    options = {"jobs": os.cpu_count(), "opt_level": "O0", "verbose": False}
+    builder.build(sim_config=config, interactive=False, **options)
 
 
 if __name__ == "__main__":
