@@ -153,7 +153,7 @@ def _defines(table: RegisterMap, prefix: str) -> Iterator[str]:
                 mask = ((1 << field.bits) - 1) << field.low
                 yield f"#define {each}_MASK {mask:#x}u  /* {_plain(field.meaning)} */"
                 yield f"#define {each}_SHIFT {field.low}"
-            if field.kind == "constant":
+            if field.kind == "constant" or field.reset:
                 yield f"#define {each}_RESET {field.reset:#x}u"
 
 

@@ -41,7 +41,7 @@ def test_peakrdl_and_a_compiler_agree_with_the_header(tmp_path):
     compiler = RDLCompiler()
     compiler.compile_file(str(tmp_path / "n_registers.rdl"))
     CHeaderExporter().export(compiler.elaborate(), str(tmp_path / "peakrdl.h"))
-    names = re.findall(r"#define WHEELS_NODE_(\w+) 0x\w+  ", files["n_registers.h"])
+    names = re.findall(r"#define WHEELS_NODE_(\w+) 0x[0-9a-f]+  ", files["n_registers.h"])
     assert {"ID", "NODE_CONTROL", "REQUEST_ROBOT_WHEELS_CALIBRATE_BYTES_HIGH"} <= set(names)
     same = "".join(
         f'_Static_assert(offsetof(wheels_node_t, {name.lower()}) == WHEELS_NODE_{name}, "");\n'
