@@ -40,10 +40,10 @@ subscribe:
   /twist_in: {{type: geometry_msgs/msg/Twist}}
   /scan_in: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 2048}}
 publish:
-  /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048}}
-  /imu_out: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192}}
-  /twist_out: {{type: geometry_msgs/msg/Twist, memory_bytes: 2048}}
-  /scan_out: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 16384}}
+  /text_out: {{type: std_msgs/msg/String, memory_bytes: 2048, history: keep_all}}
+  /imu_out: {{type: sensor_msgs/msg/Imu, memory_bytes: 8192, history: keep_all}}
+  /twist_out: {{type: geometry_msgs/msg/Twist, memory_bytes: 2048, history: keep_all}}
+  /scan_out: {{type: sensor_msgs/msg/LaserScan, memory_bytes: 16384, history: keep_all}}
 serve:
   /mode: {{type: std_srvs/srv/SetBool, memory_bytes: 256}}
 """
