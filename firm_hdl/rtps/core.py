@@ -7,7 +7,7 @@ the endpoint that it is for. :mod:`firm_hdl.rtps.participant` connects it with a
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 
 from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
 from firm_hdl.rtps.budget import Budget
@@ -55,11 +55,6 @@ _MAX_EVENTS, _MAX_EVENT_BYTES = 1 << 16, 64 << 20
 
 class Core:
     """A participant.
-
-    Parameters
-    ----------
-    settings : Settings
-        What it is and does.
 
     Attributes
     ----------
@@ -219,15 +214,8 @@ class Core:
 
     def tick(self, now: float) -> float:
         """Do what is due. Return when to call again, at the latest."""
-        due = [self._spdp.tick(now), self._sedp.tick(now)]
-        for local in self._sedp.locals.values():
-            due.append(local.endpoint.tick(now))
-        return min(due)
-
-    def ask(self, writers: Iterable[Writer], now: float) -> None:
-        """Ask the readers of some writers to acknowledge what they have, at once."""
-        for writer in writers:
-            writer.ask_all(now)
+        ends = (local.endpoint.tick(now) for local in self._sedp.locals.values())
+        return min(self._spdp.tick(now), self._sedp.tick(now), *ends)
 
     @property
     def writers(self) -> list[Writer]:

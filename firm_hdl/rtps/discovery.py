@@ -37,8 +37,6 @@ class ParticipantData:
 
     Attributes
     ----------
-    prefix : bytes
-        GUID prefix.
     vendor : bytes
         Two bytes.
     discovery, user : tuple of Address
@@ -49,8 +47,6 @@ class ParticipantData:
         Bits of the built-in endpoints that it has.
     user_data : bytes
         ROS 2 has its enclave here.
-    name : str
-        Name of the participant.
     domain : int or None
         The domain, where the participant says it.
     """
@@ -122,8 +118,6 @@ class EndpointData:
 
     Attributes
     ----------
-    guid : Guid
-        Its name.
     topic, type_name : str
         Names, of which both have to be equal for two endpoints to match.
     qos : Qos

@@ -388,7 +388,8 @@ class Participant:
 
         end = time.monotonic() + _FAREWELL
         with self._changed:
-            self._core.ask(writers, time.monotonic())
+            for each in writers:
+                each.ask_all(time.monotonic())
             self._flush()
             if not self._in_callback():
                 self._changed.wait_for(is_settled, _FAREWELL)

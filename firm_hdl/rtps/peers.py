@@ -133,8 +133,6 @@ class Route:
 
     Attributes
     ----------
-    peer : Peer
-        The participant.
     own : tuple of Address
         Addresses of the endpoint itself, if it names any.
     discovery : bool
@@ -157,8 +155,6 @@ class Outgoing:
 
     Attributes
     ----------
-    route : Route
-        The way that it goes.
     prefix : bytes
         GUID prefix of the participant that it is for.
     submessages : tuple

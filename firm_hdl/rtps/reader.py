@@ -91,14 +91,6 @@ class Reader:
 
     Parameters
     ----------
-    guid : Guid
-        Its name.
-    qos : Qos
-        Its policies.
-    send : Send
-        Takes its datagrams.
-    deliver : Deliver
-        Takes samples.
     budget : Budget
         Memory for fragments, and for samples that wait for earlier ones.
     most_bytes : int

@@ -49,8 +49,6 @@ class Local:
 
     Attributes
     ----------
-    endpoint : Writer or Reader
-        The endpoint.
     data : EndpointData
         What is announced about it.
     number : int
@@ -98,10 +96,6 @@ class Sedp:
 
     Parameters
     ----------
-    prefix : bytes
-        GUID prefix of this participant.
-    send : Send
-        Takes datagrams.
     budget : Budget
         Memory for announcements that are not complete.
     events : deque

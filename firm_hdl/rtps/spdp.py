@@ -13,7 +13,7 @@ from firm_hdl.rtps.peers import Peer, Route
 from firm_hdl.rtps.wire.guid import PARTICIPANT, SPDP_READER, SPDP_WRITER, Guid
 from firm_hdl.rtps.wire.locators import Address
 from firm_hdl.rtps.wire.parameters import ParameterList, Pid
-from firm_hdl.rtps.wire.submessages import NO_PARAMETERS, Data
+from firm_hdl.rtps.wire.submessages import Data
 from firm_hdl.rtps.writer import FRAGMENT_BYTES
 
 if TYPE_CHECKING:
@@ -93,12 +93,8 @@ class Spdp:
 
     Parameters
     ----------
-    settings : Settings
-        What it announces, and where.
     listener : Sedp
         Who is told of peers, and knows how much each one is to us.
-    tell : Tell
-        Sends announcements.
     counters : Counter
         Counts announcements that got ``no_place``, and peers that were ``displaced`` by others.
     """
@@ -125,7 +121,6 @@ class Spdp:
             writer=SPDP_WRITER,
             sequence_number=1,
             payload=settings.own.encode(),
-            inline=NO_PARAMETERS,
         )
         self._left: dict[bytes, float] = {}
         self._announce_at = float("-inf")
@@ -226,7 +221,6 @@ class Spdp:
 
     def leave(self) -> None:
         """Tell all that this participant leaves."""
-        inline = ParameterList(((Pid.STATUS_INFO, DISPOSED),))
         guid = Guid(self._own.prefix, PARTICIPANT)
         farewell = Data(
             reader=SPDP_READER,
@@ -234,7 +228,7 @@ class Spdp:
             sequence_number=2,
             payload=key_payload(guid, Pid.PARTICIPANT_GUID),
             key=True,
-            inline=inline,
+            inline=ParameterList(((Pid.STATUS_INFO, DISPOSED),)),
         )
         self._tell_all(farewell, (), list(self._peers.values()))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import socket
 import struct
 import sys
@@ -152,7 +153,7 @@ def _bind_unicast(domain: int, host: str) -> tuple[int, tuple[socket.socket, soc
         except OSError as problem:
             discovery.close()
             user.close()
-            if not _in_use(problem):
+            if problem.errno != errno.EADDRINUSE:
                 raise TransportError(f"no sockets on {host}: {problem}") from problem
     raise TransportError(f"all {len(every)} participants of domain {domain} are there")
 
@@ -183,9 +184,3 @@ def _socket() -> socket.socket:
     with suppress(OSError):
         made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER_BYTES)
     return made
-
-
-def _in_use(problem: OSError) -> bool:
-    import errno
-
-    return problem.errno == errno.EADDRINUSE

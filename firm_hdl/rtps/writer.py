@@ -71,8 +71,6 @@ class Change:
 
     Attributes
     ----------
-    data : Data
-        The sample.
     timestamp : int or None
         Nanoseconds since 1970.
     to : collection of Guid or None
@@ -149,12 +147,6 @@ class Writer:
 
     Parameters
     ----------
-    guid : Guid
-        Its name.
-    qos : Qos
-        Its policies.
-    send : Send
-        Takes its datagrams.
     fragment_bytes : int
         Samples with more bytes are sent in fragments of this size.
     counters : Counter

@@ -202,7 +202,7 @@ def request(number, related=None, writer=GUIDS[1]):
 
 def serving(handler=lambda payload: payload):
     service, replies = Service(handler), Replies()
-    service.open(replies)
+    service.replies = replies
     return service, replies
 
 
@@ -297,7 +297,7 @@ def test_a_reply_is_sent_if_its_reader_comes_while_it_is_put_aside():
     service = Service(lambda payload: payload)
     replies = Late()
     replies.readers = ()
-    service.open(replies)
+    service.replies = replies
     service.on_request(request(1, READER))
     assert [reply for reply, _, _ in replies.sent] == [b"1"]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 from firm_hdl.drawing.svg import Figure
 from firm_hdl.export.datasheet.rows import WIDTH, Cell, Kind, Row, draw_rows
@@ -25,7 +25,7 @@ from firm_hdl.wire import (
     Trigger,
 )
 
-__all__ = ["Band", "BandCell", "Grid", "Note", "bands", "layout_figure"]
+__all__ = ["Band", "BandCell", "Grid", "bands", "layout_figure"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,21 +57,8 @@ class Grid:
     cells: list[BandCell] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Note:
-    """A line of text: a part whose size varies, a message without bytes, or the start of a loop.
-
-    Attributes
-    ----------
-    kind : "data", "padding" or "loop"
-    """
-
-    depth: int
-    kind: Literal["data", "padding", "loop"]
-    text: str
-
-
-Band: TypeAlias = "Grid | Note"
+Band: TypeAlias = "Grid | Row"
+"""Bytes; or a text: a part whose size varies, a message without bytes, or the start of a loop."""
 
 
 def bands(layout: Layout) -> list[Band]:
@@ -104,8 +91,8 @@ class _Drawing:
         if self.at is not None:
             self.at += size
 
-    def note(self, kind: Literal["data", "padding", "loop"], text: str) -> None:
-        self.bands.append(Note(depth=self.depth, kind=kind, text=text))
+    def note(self, kind: Kind, text: str) -> None:
+        self.bands.append(Row(depth=self.depth, kind=kind, label=text))
         self.grid, self.at = None, None
 
     def gap(self, gap: Gap) -> None:
@@ -176,8 +163,8 @@ def layout_figure(layout: Layout) -> Figure:
 
 
 def _rows(band: Band) -> Iterator[Row]:
-    if isinstance(band, Note):
-        yield Row(depth=band.depth, label=band.text, kind=band.kind)
+    if isinstance(band, Row):
+        yield band
         return
     rows: dict[int, list[BandCell]] = {}
     left_out: dict[int, int] = {}

@@ -283,12 +283,9 @@ class _Bits:
 
     def draw(self, figure: Figure, top: float) -> None:
         _name(figure, top, self.name)
-        levels = [(LEFT + c * COLUMN, top + (4 if bit else ROW - 4)) for c, bit in self.places()]
+        places = enumerate([*self.bits, self.bits[-1]])
+        levels = [(LEFT + c * COLUMN, top + (4 if bit else ROW - 4)) for c, bit in places]
         figure.path(levels, "curve c1", steps=True)
-
-    def places(self) -> Iterator[tuple[int, int]]:
-        yield from enumerate(self.bits)
-        yield len(self.bits), self.bits[-1]
 
 
 def _name(figure: Figure, top: float, name: str) -> None:

@@ -33,11 +33,6 @@ class Context:
         As of :class:`firm_hdl.rtps.participant.Participant`.
     options
         Further parameters of the participant, such as `interface`.
-
-    Attributes
-    ----------
-    participant : Participant
-        The participant.
     """
 
     def __init__(

@@ -148,23 +148,19 @@ class Node:
             Type hashes of its two messages.
         """
         full, service = self._expanded(name), Service(handler)
-        service.open(
-            self._writer(
-                names.reply_topic(full),
-                names.type_name(type_name, "_Response"),
-                _SERVICE_QOS,
-                user_data=names.user_data(response_hash),
-                on_match=service.on_match,
-            )
+        service.replies = self._writer(
+            names.reply_topic(full),
+            names.type_name(type_name, "_Response"),
+            _SERVICE_QOS,
+            user_data=names.user_data(response_hash),
+            on_match=service.on_match,
         )
-        service.listen(
-            self._reader(
-                names.request_topic(full),
-                names.type_name(type_name, "_Request"),
-                service.on_request,
-                _SERVICE_QOS,
-                user_data=names.user_data(request_hash),
-            )
+        service.requests = self._reader(
+            names.request_topic(full),
+            names.type_name(type_name, "_Request"),
+            service.on_request,
+            _SERVICE_QOS,
+            user_data=names.user_data(request_hash),
         )
         return service
 

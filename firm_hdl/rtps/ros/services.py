@@ -94,14 +94,17 @@ class Service:
 
     Attributes
     ----------
+    replies, requests : DataWriter and DataReader
+        The node sets both, the writer first: requests come once there is the reader.
     dropped : int
         How many requests and replies gave way to others, as too many waited, or came too late.
     """
 
+    replies: DataWriter
+    requests: DataReader
+
     def __init__(self, handler: Handler):
         self._handler = handler
-        self._replies: DataWriter | None = None
-        self._requests: DataReader | None = None
         # Replies may come from any thread.
         self._lock = threading.Lock()
         # Replies whose reader is not known yet: discovery may bring the request's writer first.
@@ -109,14 +112,6 @@ class Service:
         # Requests that the handler has not answered yet.
         self._open: _Queue[Future[bytes]] = _Queue()
         self.dropped = 0
-
-    def open(self, replies: DataWriter) -> None:
-        """Take the writer of replies. After that, requests may come."""
-        self._replies = replies
-
-    def listen(self, requests: DataReader) -> None:
-        """Take the reader of requests."""
-        self._requests = requests
 
     def on_request(self, request: Sample) -> None:
         """Answer a request."""
@@ -152,10 +147,9 @@ class Service:
 
     def _reply(self, identity: SampleIdentity, payload: bytes) -> None:
         """Send a reply, or keep it until its reader is known."""
-        assert self._replies is not None
         readers = self._readers_of(identity)
         if readers:
-            self._replies.write(payload, identity, to=readers)
+            self.replies.write(payload, identity, to=readers)
             return
         reply = _Reply(identity, payload, time.monotonic() + _PATIENCE)
         size, prefix = 1 + len(payload) // _UNIT_BYTES, identity.writer.prefix
@@ -169,17 +163,15 @@ class Service:
 
         A client that names no reader has one in the participant that its request came from.
         """
-        assert self._replies is not None
         asked, is_named = identity.writer, bool(identity.writer.entity & _READER_BIT)
         return [
             each.guid
-            for each in self._replies.matched
+            for each in self.replies.matched
             if each.guid == asked or (not is_named and each.guid.prefix == asked.prefix)
         ]
 
     def _try(self, reply: _Reply) -> None:
         """Send a reply that waits, if its reader is known."""
-        assert self._replies is not None
         is_late = reply.deadline < time.monotonic()
         readers = self._readers_of(reply.identity)
         if not is_late and not readers:
@@ -189,7 +181,7 @@ class Service:
             waits = self._waiting.pop(reply.identity.writer.prefix, reply.identity)
             self.dropped += waits and is_late
         if waits and not is_late:
-            self._replies.write(reply.payload, reply.identity, to=readers)
+            self.replies.write(reply.payload, reply.identity, to=readers)
 
     def on_match(self, reader: EndpointData, came: bool) -> None:
         """Send the replies that wait for a reader."""
@@ -201,9 +193,8 @@ class Service:
 
     def close(self) -> None:
         """Remove the service."""
-        for each in (self._requests, self._replies):
-            if each is not None:
-                each.close()
+        self.requests.close()
+        self.replies.close()
 
 
 class Client:

@@ -28,8 +28,6 @@ class Cursor:
 
     Parameters
     ----------
-    data : bytes
-        The bytes.
     little : bool
         Whether integers are little-endian.
     at : int

@@ -154,7 +154,7 @@ class NumberSet:
         return cls(base, tuple(base + n for n in numbers if words[n // 32] >> (31 - n % 32) & 1))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Gap:
     """GAP: sequence numbers that the writer will not send to this reader (8.3.8.4).
 
@@ -177,11 +177,10 @@ class Gap:
     def decode(cls, flags: int, cursor: Cursor) -> Gap:
         reader, writer = cursor.u32_big(), cursor.u32_big()
         start = _writer_number(cursor)
-        numbers = NumberSet.decode(cursor, cursor.sequence_number())
-        return cls(reader=reader, writer=writer, start=start, numbers=numbers)
+        return cls(reader, writer, start, NumberSet.decode(cursor, cursor.sequence_number()))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Heartbeat:
     """HEARTBEAT: the sequence numbers that a writer has (8.3.8.6).
 
@@ -215,11 +214,10 @@ class Heartbeat:
         first, last = _writer_number(cursor), cursor.sequence_number()
         if last < first - 1:
             raise MalformedError(f"a heartbeat from {first} to {last}")
-        final, count = bool(flags & _FINAL), cursor.u32()
-        return cls(reader=reader, writer=writer, first=first, last=last, count=count, final=final)
+        return cls(reader, writer, first, last, cursor.u32(), bool(flags & _FINAL))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class AckNack:
     """ACKNACK: the sequence numbers that a reader has, and those that it misses (8.3.8.1).
 
@@ -244,11 +242,10 @@ class AckNack:
     def decode(cls, flags: int, cursor: Cursor) -> AckNack:
         reader, writer = cursor.u32_big(), cursor.u32_big()
         missing = NumberSet.decode(cursor, cursor.sequence_number())
-        final, count = bool(flags & _FINAL), cursor.u32()
-        return cls(reader=reader, writer=writer, missing=missing, count=count, final=final)
+        return cls(reader, writer, missing, cursor.u32(), bool(flags & _FINAL))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class HeartbeatFrag:
     """HEARTBEAT_FRAG: the fragments of a sample that a writer has sent (8.3.8.7)."""
 
@@ -268,12 +265,10 @@ class HeartbeatFrag:
     @classmethod
     def decode(cls, flags: int, cursor: Cursor) -> HeartbeatFrag:
         reader, writer = cursor.u32_big(), cursor.u32_big()
-        number = _writer_number(cursor)
-        last, count = cursor.u32(), cursor.u32()
-        return cls(reader=reader, writer=writer, sequence_number=number, last=last, count=count)
+        return cls(reader, writer, _writer_number(cursor), cursor.u32(), cursor.u32())
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class NackFrag:
     """NACK_FRAG: the fragments of a sample that a reader misses (8.3.8.12)."""
 
@@ -296,16 +291,10 @@ class NackFrag:
         reader, writer = cursor.u32_big(), cursor.u32_big()
         number = _writer_number(cursor)
         missing = NumberSet.decode(cursor, cursor.u32())
-        return cls(
-            reader=reader,
-            writer=writer,
-            sequence_number=number,
-            missing=missing,
-            count=cursor.u32(),
-        )
+        return cls(reader, writer, number, missing, cursor.u32())
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Data:
     """DATA: a sample, or the end of an instance (8.3.8.2).
 
@@ -317,8 +306,6 @@ class Data:
         The number of the sample, from 1 on.
     payload : bytes or None
         The serialized sample with its encapsulation header; the serialized key if `key`.
-    inline : ParameterList
-        Inline QoS.
     """
 
     KIND: ClassVar[int] = 0x15
@@ -346,17 +333,11 @@ class Data:
         inline = ParameterList.decode(cursor) if flags & _INLINE else NO_PARAMETERS
         if flags & _DATA and flags & _KEY:
             raise MalformedError("data and key at once")
-        return cls(
-            reader=reader,
-            writer=writer,
-            sequence_number=number,
-            payload=cursor.take(cursor.left) if flags & (_DATA | _KEY) else None,
-            key=bool(flags & _KEY),
-            inline=inline,
-        )
+        payload = cursor.take(cursor.left) if flags & (_DATA | _KEY) else None
+        return cls(reader, writer, number, payload, bool(flags & _KEY), inline)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class DataFrag:
     """DATA_FRAG: consecutive fragments of a sample (8.3.8.3).
 
@@ -400,18 +381,9 @@ class DataFrag:
             raise MalformedError(f"{count} fragments of {size} bytes from {first} of {whole} bytes")
         cursor.at = behind
         inline = ParameterList.decode(cursor) if flags & _INLINE else NO_PARAMETERS
-        return cls(
-            reader=reader,
-            writer=writer,
-            sequence_number=number,
-            first=first,
-            count=count,
-            fragment_bytes=size,
-            sample_bytes=whole,
-            # Bytes behind the last fragment are padding.
-            payload=cursor.take(min(count * size, whole - (first - 1) * size)),
-            inline=inline,
-        )
+        # Bytes behind the last fragment are padding.
+        payload = cursor.take(min(count * size, whole - (first - 1) * size))
+        return cls(reader, writer, number, first, count, size, whole, payload, inline)
 
 
 Submessage: TypeAlias = (

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from firm_hdl.export.datasheet.layout import ROW_BYTES, Note, bands, layout_figure
+from firm_hdl.export.datasheet.layout import ROW_BYTES, bands, layout_figure
 from firm_hdl.export.datasheet.rows import INDENT, LEFT, MOST_ROWS, WIDTH, Row, draw_rows
 from firm_hdl.export.datasheet.steps import plan_figure
 from firm_hdl.frontend import Library
@@ -30,8 +30,8 @@ def bands_in_words(found):
     lines = []
     for band in found:
         indent = "  " * band.depth
-        if isinstance(band, Note):
-            lines.append(f"{indent}{band.kind}: {band.text}")
+        if isinstance(band, Row):
+            lines.append(f"{indent}{band.kind}: {band.label}")
             continue
         lines.append(f"{indent}from {band.start}")
         for cell in band.cells:
@@ -163,7 +163,7 @@ def test_cells_stand_where_their_bytes_are(name, wire):
         (*box(each), each[0].text) for each in shapes(layout_figure(layout), "rect") if len(each)
     ]
     for band in bands(layout):
-        if isinstance(band, Note):
+        if isinstance(band, Row):
             continue
         left = LEFT + band.depth * INDENT
         for cell in band.cells:
