@@ -41,30 +41,16 @@ class BandCell:
 
 @dataclass(slots=True, kw_only=True)
 class Grid:
-    """Bytes in a row.
+    """Bytes in a row."""
 
-    Attributes
-    ----------
-    depth : int
-        Number of loops around the grid.
-    start : int or None
-        Offset in the packet; `None` after the first note.
-    cells : list of BandCell
-    """
-
-    depth: int
-    start: int | None
+    depth: int  # Number of loops around the grid.
+    start: int | None  # Offset in the packet; `None` after the first note.
     cells: list[BandCell] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Note:
-    """A line of text: a part whose size varies, a message without bytes, or the start of a loop.
-
-    Attributes
-    ----------
-    kind : "data", "padding" or "loop"
-    """
+    """A line of text: a part whose size varies, a message without bytes, or the start of a loop."""
 
     depth: int
     kind: Literal["data", "padding", "loop"]

@@ -26,14 +26,9 @@ def padded(value: bytes, alignment: int = 4) -> bytes:
 class Cursor:
     """A place in bytes, which moves forward as values are read.
 
-    Parameters
-    ----------
-    data : bytes
-        The bytes.
-    little : bool
-        Whether integers are little-endian.
-    at : int
-        Number of the first byte to read.
+    * `data`: the bytes.
+    * `little`: whether integers are little-endian.
+    * `at`: number of the first byte to read.
     """
 
     __slots__ = ("at", "data", "little", "order")
@@ -52,10 +47,7 @@ class Cursor:
     def take(self, count: int) -> bytes:
         """Read `count` bytes.
 
-        Raises
-        ------
-        MalformedError
-            There are fewer bytes left.
+        Raises `MalformedError`: there are fewer bytes left.
         """
         end = self.at + count
         if count < 0 or end > len(self.data):
