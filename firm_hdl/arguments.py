@@ -42,15 +42,9 @@ def positive(text: str) -> int:
 def number_between(text: str, minimum: int, maximum: int | None) -> int:
     """Read a number between limits, both included, for `argparse`.
 
-    Parameters
-    ----------
-    text : str
-        The number in decimal, or with a prefix such as ``0x``.
+    * `text`: the number in decimal, or with a prefix such as ``0x``.
 
-    Raises
-    ------
-    argparse.ArgumentTypeError
-        If the text is not a number, or the number is out of range.
+    Raises `argparse.ArgumentTypeError` if the text is not a number, or the number is out of range.
     """
     try:
         number = int(text, 0)
@@ -65,10 +59,7 @@ def number_between(text: str, minimum: int, maximum: int | None) -> int:
 def seconds(text: str) -> float:
     """Read a finite number of seconds above 0, for `argparse`.
 
-    Raises
-    ------
-    argparse.ArgumentTypeError
-        If the text is no such number.
+    Raises `argparse.ArgumentTypeError` if the text is no such number.
     """
     try:
         found = float(text)
@@ -139,10 +130,7 @@ def add_path(command: argparse._ActionsContainer) -> None:
 def add_engine(command: argparse._ActionsContainer, use: str) -> None:
     """Add ``--engine``, what runs a fast simulation.
 
-    Parameters
-    ----------
-    use : str
-        When the option counts, such as ``"run --board sim"``.
+    * `use`: when the option counts, such as ``"run --board sim"``.
     """
     command.add_argument(
         "--engine",

@@ -37,13 +37,9 @@ Without a limit, a large file that is no definition takes minutes.
 class Source:
     """A text of definitions.
 
-    Parameters
-    ----------
-    name : str
-        Name in messages: a file's path as the user wrote it, or ``<origin>/...`` for a text that
-        does not come from a file.
-    text : str
-        The whole text, with its original line ends.
+    * `name`: name in messages: a file's path as the user wrote it, or ``<origin>/...`` for a text
+      that does not come from a file.
+    * `text`: the whole text, with its original line ends.
     """
 
     name: str

@@ -28,10 +28,8 @@ _KINDS = (
 def read_file(path: str | os.PathLike[str], max_bytes: int) -> bytes:
     """Read a file.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be read, is not a regular file, or has more than `max_bytes`.
+    Raises `OSError` if the file cannot be read, is not a regular file, or has more than
+    `max_bytes`.
     """
     check_file(path, max_bytes)
     # Open without blocking, because the file may have been replaced since the check.
@@ -48,10 +46,8 @@ def read_file(path: str | os.PathLike[str], max_bytes: int) -> bytes:
 def check_file(path: str | os.PathLike[str], max_bytes: int | None = None) -> None:
     """Check that a path is a regular file of a sensible size, without opening it.
 
-    Raises
-    ------
-    OSError
-        If the path does not exist, or is another kind of file, or the file is too large.
+    Raises `OSError` if the path does not exist, or is another kind of file, or the file is too
+    large.
     """
     _check(os.stat(path), path, max_bytes)
 
@@ -77,10 +73,7 @@ def write_file(path: str | os.PathLike[str], text: str) -> None:
     that somebody reads, are written to. Bytes of a file's name that are not UTF-8 are written as in
     JSON, ``\\udcff``.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written. A regular file is then unchanged.
+    Raises `OSError` if the file cannot be written. A regular file is then unchanged.
     """
     data = text.encode("utf-8", "backslashreplace")
     status = os.stat(path) if os.path.exists(path) else None
@@ -122,18 +115,11 @@ def write_new(
 ) -> None:
     """Write a file that does not exist yet.
 
-    Parameters
-    ----------
-    mode : int
-        Rights, before the process's mask.
-    folder : int or None
-        Descriptor of the folder that a relative path is in; `None`: the current folder.
+    * `mode`: rights, before the process's mask.
+    * `folder`: descriptor of the folder that a relative path is in; `None`: the current folder.
 
-    Raises
-    ------
-    OSError
-        If something exists at the path, a link included, or the file cannot be written. There is
-        no new file.
+    Raises `OSError` if something exists at the path, a link included, or the file cannot be
+    written. There is no new file.
     """
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
     number = os.open(path, flags, mode, dir_fd=folder)

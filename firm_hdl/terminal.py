@@ -39,11 +39,7 @@ def printable(text: str) -> str:
 class _Printable:
     """A stream that escapes control characters.
 
-    Parameters
-    ----------
-    stream : text stream
-    replaces : bool
-        Whether a text may begin with a carriage return, and so replace the line before.
+    * `replaces`: whether a text may begin with a carriage return, and so replace the line before.
     """
 
     def __init__(self, stream: TextIO, *, replaces: bool) -> None:
@@ -76,18 +72,11 @@ def printable_streams() -> Iterator[None]:
 
 
 class _Line:
-    """A line on a terminal that says what the command does, and for how long.
-
-    Attributes
-    ----------
-    text : str
-        What the command does; empty: no line is shown.
-    done, total : int
-        How much of it is done; a total of 0: not known.
-    """
+    """A line on a terminal that says what the command does, and for how long."""
 
     def __init__(self) -> None:
-        self.text = ""
+        self.text = ""  # What the command does; empty: no line is shown.
+        # How much of it is done; a total of 0: not known.
         self.done = self.total = 0
         self._first, self._since = 0, 0.0
         self._descriptor = -1
@@ -159,12 +148,8 @@ _line = _Line()
 def stage(text: str, done: int = 0, total: int = 0) -> None:
     """Say what the command does from now on, for the line of `progress`; empty: show none.
 
-    Parameters
-    ----------
-    text : str
-        With a total, it names what is counted, such as ``"verify: types"``.
-    done, total : int
-        How much of it is done; a total of 0: not known.
+    * `text`: with a total, it names what is counted, such as ``"verify: types"``.
+    * `done`, `total`: how much of it is done; a total of 0: not known.
     """
     _line.tell(text, done, total)
 

@@ -19,19 +19,12 @@ MOST_BITS = 64
 
 @dataclass(frozen=True, slots=True)
 class FloatFormat:
-    """A binary interchange format of IEEE 754.
-
-    Attributes
-    ----------
-    bits, mantissa_bits, exponent_bits : int
-    letter : str
-        Its letter in :mod:`struct`.
-    """
+    """A binary interchange format of IEEE 754."""
 
     bits: int
     mantissa_bits: int
     exponent_bits: int
-    letter: str
+    letter: str  # Its letter in `struct`.
 
     @property
     def bias(self) -> int:
@@ -44,10 +37,7 @@ _FORMATS = {32: FloatFormat(32, 23, 8, "f"), 64: FloatFormat(64, 52, 11, "d")}
 def format_of(float_bits: int) -> FloatFormat:
     """Return the format of a float.
 
-    Raises
-    ------
-    ValueError
-        If ROS has no float of so many bits.
+    Raises `ValueError` if ROS has no float of so many bits.
     """
     if float_bits not in _FORMATS:
         raise ValueError(f"A float of ROS has 32 or 64 bits, not {float_bits!r}")

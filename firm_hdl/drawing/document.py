@@ -37,10 +37,7 @@ def pages(*folders: Path) -> Environment:
 
     All text is escaped, so that nothing in it is a tag, and has no characters that are not shown.
 
-    Parameters
-    ----------
-    *folders : Path
-        Folders with templates; those of this package can be used, too.
+    * `*folders`: folders with templates; those of this package can be used, too.
     """
     found = Environment(
         loader=FileSystemLoader([*folders, _FOLDER]),

@@ -43,19 +43,12 @@ def seconds(value: float) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """The mapping from values to coordinates in a figure.
+    """The mapping from values to coordinates in a figure."""
 
-    Attributes
-    ----------
-    low, high : float
-        Values at the ends.
-    start, end : float
-        Coordinates of the ends.
-    is_log : bool
-    """
-
+    # Values at the ends.
     low: float
     high: float
+    # Coordinates of the ends.
     start: float
     end: float
     is_log: bool = False
@@ -115,19 +108,11 @@ def spread(index: int) -> float:
 
 @dataclass(slots=True)
 class Figure:
-    """A figure.
-
-    Attributes
-    ----------
-    width, height : int
-    label : str
-        The text for screen readers.
-    parts : list of str
-    """
+    """A figure."""
 
     width: int
     height: int
-    label: str
+    label: str  # The text for screen readers.
     parts: list[str] = field(default_factory=list)
 
     def __str__(self) -> str:

@@ -30,28 +30,16 @@ FEATURES = ("bits", "steps", "lengths")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Estimate:
-    """An estimate of a converter, or of another part of a node.
+    """An estimate of a converter, or of another part of a node."""
 
-    Attributes
-    ----------
-    part : str
-        FPGA and speed grade.
-    lut, ff : int
-        Look-up tables and flip-flops.
-    mhz : float
-        Clock rate.
-    type : str
-        The type that was measured, or which parts were.
-    is_same : bool
-        Whether the measured type is the type itself, with a plan of the same features. Parts that
-        are not converters are estimated.
-    """
-
-    part: str
+    part: str  # FPGA and speed grade.
+    # Look-up tables and flip-flops.
     lut: int
     ff: int
-    mhz: float
-    type: str
+    mhz: float  # Clock rate.
+    type: str  # The type that was measured, or which parts were.
+    # Whether the measured type is the type itself, with a plan of the same features. Parts that are
+    # not converters are estimated.
     is_same: bool
 
 
@@ -67,16 +55,10 @@ def estimates_of(
 ) -> dict[str, Estimate]:
     """Return the nearest estimate of each converter of a plan.
 
-    Parameters
-    ----------
-    plan : Plan
-    measured : sequence of dict or None
-        Entries of the file; `None`: those of the package.
+    * `measured`: entries of the file; `None`: those of the package.
 
-    Returns
-    -------
-    dict
-        By ``deserializer`` and ``serializer``; empty if no converter with that bus was measured.
+    The result is by ``deserializer`` and ``serializer``; empty if no converter with that bus was
+    measured.
     """
     entries = _measured() if measured is None else measured
     features = features_of(plan)

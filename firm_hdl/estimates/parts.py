@@ -62,14 +62,10 @@ _CELLS_PER_LUT = 1.6
 def part_estimate(name: str, *, memories: int = 0, bus_bytes: int = 0, peers: int = 0) -> Estimate:
     """Return the area and the clock rate of a part of a node.
 
-    Parameters
-    ----------
-    name : str
-        ``core``, the kind of a link, or ``ethernet`` and that kind: the layers from UDP to a PHY.
-    memories : int
-        Packet memories of topics: one for each direction.
-    bus_bytes, peers : int
-        As in the description of the node.
+    * `name`: ``core``, the kind of a link, or ``ethernet`` and that kind: the layers from UDP to a
+      PHY.
+    * `memories`: packet memories of topics: one for each direction.
+    * `bus_bytes`, `peers`: as in the description of the node.
     """
     what, mhz, factors = _PARTS[name]
     numbers = (1, memories, memories * bus_bytes, bus_bytes, peers)
@@ -81,9 +77,6 @@ def part_estimate(name: str, *, memories: int = 0, bus_bytes: int = 0, peers: in
 def placed_cells(lut: int) -> int:
     """Return how many cells of look-up tables a placed node takes.
 
-    Parameters
-    ----------
-    lut : int
-        Those of logic, as in an estimate. Carry chains and memories are cells, too.
+    * `lut`: those of logic, as in an estimate. Carry chains and memories are cells, too.
     """
     return 100 * round(_CELLS_PER_LUT * lut / 100)

@@ -33,39 +33,20 @@ def drops_layout() -> data.StructLayout:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EthernetSettings:
-    """Addresses, ports and memories of a node on Ethernet.
+    """Addresses, ports and memories of a node on Ethernet."""
 
-    Attributes
-    ----------
-    mac : int
-        48 bits.
-    address : int
-        32 bits, as all addresses of IPv4.
-    prefix_bits : int
-        Bits of the address that are those of the network.
-    gateway : int
-        0: nothing leaves the network.
-    ports : tuple of int
-        Ports of UDP on which datagrams come.
-    groups : tuple of int
-        Groups that the node joins.
-    memory_bytes : int
-        For whole datagrams that wait to be read: a power of two, at least 2,048.
-    fragment_bytes : int
-        For datagrams in fragments, as a :class:`firm_hdl.ethernet.fragments.Reassembler` has it. 0:
-        fragments are dropped.
-    tick_bits : int
-        A tick has ``1 << tick_bits`` cycles. It should be 50 to 100 ms: 23 bits at 125 MHz.
-    """
-
-    mac: int
-    address: int
-    prefix_bits: int = 24
-    gateway: int = 0
-    ports: tuple[int, ...]
-    groups: tuple[int, ...] = ()
+    mac: int  # 48 bits.
+    address: int  # 32 bits, as all addresses of IPv4.
+    prefix_bits: int = 24  # Bits of the address that are those of the network.
+    gateway: int = 0  # 0: nothing leaves the network.
+    ports: tuple[int, ...]  # Ports of UDP on which datagrams come.
+    groups: tuple[int, ...] = ()  # Groups that the node joins.
+    # For whole datagrams that wait to be read: a power of two, at least 2,048.
     memory_bytes: int = 4096
+    # For datagrams in fragments, as a `firm_hdl.ethernet.fragments.Reassembler` has it. 0:
+    # fragments are dropped.
     fragment_bytes: int = 0
+    # A tick has `1 << tick_bits` cycles. It should be 50 to 100 ms: 23 bits at 125 MHz.
     tick_bits: int = 23
 
 

@@ -228,10 +228,7 @@ class RgmiiPhy(_Phy):
     The cells at the pins are those of Lattice's ECP5. `txc` has the edges of the data, delayed by
     `tx_delay_ns`; what comes is delayed by `rx_delay_ns`. A PHY may delay by itself (RGMII-ID).
 
-    Parameters
-    ----------
-    rx_delay_ns, tx_delay_ns : float
-        0 to 3; a step is 0.025 ns.
+    * `rx_delay_ns`, `tx_delay_ns`: 0 to 3; a step is 0.025 ns.
     """
 
     def __init__(self, rx_delay_ns: float = 2.0, tx_delay_ns: float = 2.0) -> None:

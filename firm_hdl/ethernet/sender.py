@@ -33,18 +33,11 @@ def _sum(*words: int) -> int:
 
 
 class _Templates:
-    """The bytes of all frames up to the payload, one frame after another.
-
-    Attributes
-    ----------
-    words : list of int
-        Bytes and fields of all templates.
-    first, size : dict of str to int
-        Place and size of each.
-    """
+    """The bytes of all frames up to the payload, one frame after another."""
 
     def __init__(self, mac: int, address: int, groups: tuple[int, ...]) -> None:
-        self.words: list[int] = []
+        self.words: list[int] = []  # Bytes and fields of all templates.
+        # Place and size of each.
         self.first: dict[str, int] = {}
         self.size: dict[str, int] = {}
         own = [*mac.to_bytes(6, "big")]

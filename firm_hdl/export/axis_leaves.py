@@ -18,35 +18,21 @@ __all__ = ["AxisPort", "axis_module", "axis_ports"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisPort:
-    """A port of the module, and the port of the design inside.
-
-    Attributes
-    ----------
-    name : str
-    direction : "in" or "out"
-    width : int
-    inner : str
-        Empty of an input that the design has not.
-    inner_width : int
-        At most `width`. An input ignores the bits above, and an output has 0 there.
-    """
+    """A port of the module, and the port of the design inside."""
 
     name: str
     direction: Literal["in", "out"]
     width: int
-    inner: str
-    inner_width: int
+    inner: str  # Empty of an input that the design has not.
+    inner_width: int  # At most `width`. An input ignores the bits above, and an output has 0 there.
 
 
 def axis_ports(ports: Sequence[Any], members: Mapping[str, str]) -> list[AxisPort]:
     """List the ports of the module.
 
-    Parameters
-    ----------
-    ports : sequence
-        Ports of the design, each with `name`, `direction` and `width`.
-    members : mapping of str to str
-        The ports of leaves: ``data``, ``last``, ``valid`` or ``ready``, by the name of the port.
+    * `ports`: ports of the design, each with `name`, `direction` and `width`.
+    * `members`: the ports of leaves: ``data``, ``last``, ``valid`` or ``ready``, by the name of the
+      port.
     """
     taken = {port.name.lower() for port in ports if port.name not in members}
     bases: dict[str, str] = {}
@@ -82,12 +68,8 @@ def _signals(base: str) -> Iterable[str]:
 def axis_module(name: str, inner: str, ports: Sequence[AxisPort], header: str) -> str:
     """Write the module in Verilog-2005.
 
-    Parameters
-    ----------
-    name, inner : str
-        Names of the module, and of that of the design.
-    header : str
-        Lines of the comment at the head of the file.
+    * `name`, `inner`: names of the module, and of that of the design.
+    * `header`: lines of the comment at the head of the file.
     """
     lines = []
     for port in ports:

@@ -51,38 +51,21 @@ def module_name(folder: str, direction: Direction, *parts: str) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Converters:
-    """The converters of a message type; back ends write them in their languages.
-
-    Attributes
-    ----------
-    message : Message
-    plan : Plan
-        The plan of the converters.
-    name : str
-        Name of the folder; names of modules and entities start with it.
-    options : Options
-    inputs : mapping
-        Everything that the content of the files depends on; see
-        :func:`firm_hdl.export.manifest.inputs_of`.
-    stimuli : sequence of bytes
-        Packets for test benches.
-    circuits : mapping of direction to Design
-        Netlists with named ports, the source of the text in all languages. Empty until
-        :meth:`make_circuits` has made them.
-    registers : mapping of direction to MessageMap
-        Registers of the message; empty if they were not asked for.
-    register_circuits : mapping of direction to Design
-        Converters with these registers.
-    """
+    """The converters of a message type; back ends write them in their languages."""
 
     message: Message
-    plan: Plan
-    name: str
+    plan: Plan  # The plan of the converters.
+    name: str  # Name of the folder; names of modules and entities start with it.
     options: Options = field(default_factory=Options)
+    # Everything that the content of the files depends on; see `firm_hdl.export.manifest.inputs_of`.
     inputs: Mapping[str, Any] = field(default_factory=dict)
-    stimuli: Sequence[bytes] = ()
+    stimuli: Sequence[bytes] = ()  # Packets for test benches.
+    # Netlists with named ports, the source of the text in all languages. Empty until
+    # `make_circuits` has made them.
     circuits: Mapping[Direction, Design] = field(default_factory=dict)
+    # Registers of the message; empty if they were not asked for.
     registers: Mapping[Direction, MessageMap] = field(default_factory=dict)
+    # Converters with these registers.
     register_circuits: Mapping[Direction, Design] = field(default_factory=dict)
 
     def make_circuits(self) -> dict[Direction, Design]:
@@ -98,12 +81,8 @@ class Converters:
     def header(self, name: str, what: str) -> str:
         """Write the lines of a comment at the head of a file; empty without `inputs`.
 
-        Parameters
-        ----------
-        name : str
-            Name of the module, or of the folder.
-        what : str
-            Description of the file's content, such as ``"the serializer"``.
+        * `name`: name of the module, or of the folder.
+        * `what`: description of the file's content, such as ``"the serializer"``.
         """
         if not self.inputs:
             return ""
@@ -131,18 +110,10 @@ class Converters:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Output:
-    """The output of a back end.
+    """The output of a back end."""
 
-    Attributes
-    ----------
-    files : mapping of str to str
-        Texts by path in the type's folder.
-    manifest : mapping
-        Entries of the manifest about the files, by key.
-    instances : mapping of direction to str
-        An instance of each converter, to be copied into a design.
-    """
-
-    files: Mapping[str, str]
+    files: Mapping[str, str]  # Texts by path in the type's folder.
+    # Entries of the manifest about the files, by key.
     manifest: Mapping[str, Any] = field(default_factory=dict)
+    # An instance of each converter, to be copied into a design.
     instances: Mapping[Direction, str] = field(default_factory=dict)

@@ -41,25 +41,13 @@ __all__ = ["BuildError", "Built", "build", "check_size", "plan_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Built:
-    """The folder of one type.
+    """The folder of one type."""
 
-    Attributes
-    ----------
-    name : str
-        The type.
-    folder : Path
-    was_current : bool
-        The folder was current, and nothing was written.
-    description : str
-        Size and timing of the converters, as text; see :func:`firm_hdl.timing.describe`.
-    kept : tuple of str
-        Outdated files that the user changed, and that stay; paths in the folder.
-    """
-
-    name: str
+    name: str  # The type.
     folder: Path
-    was_current: bool
-    description: str
+    was_current: bool  # The folder was current, and nothing was written.
+    description: str  # Size and timing of the converters, as text; see `firm_hdl.timing.describe`.
+    # Outdated files that the user changed, and that stay; paths in the folder.
     kept: tuple[str, ...] = ()
 
 
@@ -92,34 +80,21 @@ def build(
 ) -> list[Built]:
     """Write the converters of types, each type into its own folder below ``out/distro``.
 
-    Parameters
-    ----------
-    types : iterable of str
-        As for `Library.interface`. All messages of services and actions are built.
-    out : path
-        Created if it does not exist.
-    library : Library or None
-        Library that has the types; `None`: that of the default distribution.
-    options : Options or None
-        Options of the converters; `None`: the defaults.
-    force : bool
-        Write folders that are current, too.
-    stimuli : callable or None
-        Returns the packets for the VHDL test bench of a type. `None`: users write a file of packets
-        themselves.
-    report : callable or None
-        Called with each type when it is done.
-    jobs : int or None
-        Number of processes (`None`: one per processor); 1 writes everything in this process. The
-        number does not change the files.
+    * `types`: as for `Library.interface`. All messages of services and actions are built.
+    * `out`: created if it does not exist.
+    * `library`: library that has the types; `None`: that of the default distribution.
+    * `options`: options of the converters; `None`: the defaults.
+    * `force`: write folders that are current, too.
+    * `stimuli`: returns the packets for the VHDL test bench of a type. `None`: users write a file
+      of packets themselves.
+    * `report`: called with each type when it is done.
+    * `jobs`: number of processes (`None`: one per processor); 1 writes everything in this process.
+      The number does not change the files.
 
-    Raises
-    ------
-    DefinitionError
-        With all errors in the definitions. Nothing was written.
-    BuildError
-        If a type cannot be built with these options; nothing was written. Also if something of the
-        user's is in the place of a file, or writing fails; the next build completes the folder.
+    Raises `DefinitionError`: with all errors in the definitions. Nothing was written. Raises
+    `BuildError` if a type cannot be built with these options; nothing was written. Also if
+    something of the user's is in the place of a file, or writing fails; the next build completes
+    the folder.
     """
     library = Library() if library is None else library
     options = Options() if options is None else options

@@ -57,24 +57,13 @@ _AXIS = {"data": "tdata", "count": "tkeep", "last": "tlast", "valid": "tvalid", 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComponentPort:
-    """A port of a top level.
-
-    Attributes
-    ----------
-    name : str
-    direction : "in" or "out"
-    width : int
-        Width in bits.
-    signed : bool
-    member : str
-        The member of the component that it belongs to, or what it is.
-    """
+    """A port of a top level."""
 
     name: str
     direction: Literal["in", "out"]
-    width: int
+    width: int  # Width in bits.
     signed: bool
-    member: str
+    member: str  # The member of the component that it belongs to, or what it is.
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,10 +85,7 @@ def parts_of(
 ) -> Iterator[_Part]:
     """Yield the signals of the members of a component; of structures, their fields.
 
-    Parameters
-    ----------
-    has_axis : callable
-        Whether a packet stream with that path has the ports of AXI4-Stream.
+    * `has_axis`: whether a packet stream with that path has the ports of AXI4-Stream.
     """
     members = [
         (tuple(str(name) for name in path), member, value)
@@ -145,27 +131,12 @@ def _fields(path: Path, value: Any) -> Iterator[tuple[Path, Value]]:
 class PlainPorts:
     """The members of a component as ports of plain vectors.
 
-    Parameters
-    ----------
-    component : Component
-    kind : str
-        What the component is, for errors, and the name of its instance.
-    clocks : mapping of str to pair of str
-        As for :class:`.PlainTop`.
-    has_axis, spell : callable
-        As for :func:`parts_of`; `spell` returns the path from which a port's name is made.
+    * `kind`: what the component is, for errors, and the name of its instance.
+    * `clocks`: as for :class:`.PlainTop`.
+    * `has_axis`, `spell`: as for :func:`parts_of`; `spell` returns the path from which a port's
+      name is made.
 
-    Attributes
-    ----------
-    pins : list of Pin
-        Those of the members. What has no bits has no port.
-    ports : tuple of ComponentPort
-        Clocks and resets, and then the members.
-
-    Raises
-    ------
-    UserError
-        If there are more input bits than Amaranth elaborates.
+    Raises `UserError` if there are more input bits than Amaranth elaborates.
     """
 
     def __init__(
@@ -181,6 +152,7 @@ class PlainPorts:
         parts = list(parts_of(component, has_axis))
         reserved = [name for pair in clocks.values() for name in pair]
         names = flat_names((spell(part.spelled) for part in parts), reserved)
+        # Those of the members. What has no bits has no port.
         self.pins = [
             Pin(
                 port=ComponentPort(
@@ -201,6 +173,7 @@ class PlainPorts:
             for pair in clocks.values()
             for name, member in zip(pair, ("clock", "reset, low"), strict=True)
         )
+        # Clocks and resets, and then the members.
         self.ports: tuple[ComponentPort, ...] = (*outer, *(pin.port for pin in self.pins))
         check_input_bits(f"The {kind}", self.ports)
 

@@ -20,20 +20,11 @@ __all__ = ["Declaration", "NamedConstant", "declarations", "named_constants"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NamedConstant:
-    """A constant with its name in the output.
+    """A constant with its name in the output."""
 
-    Attributes
-    ----------
-    owner : Message
-        The type that declares the constant: the message, or a type inside it.
-    constant : Constant
-    name : str
-        Name in VHDL and SystemVerilog.
-    """
-
-    owner: Message
+    owner: Message  # The type that declares the constant: the message, or a type inside it.
     constant: Constant
-    name: str
+    name: str  # Name in VHDL and SystemVerilog.
 
     def entry(self, package: str) -> dict[str, str]:
         """Return the manifest's entry on the constant, which `package` declares."""
@@ -50,25 +41,15 @@ Form: TypeAlias = Literal["bool", "signed", "unsigned", "real", "bits", "string"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Declaration:
-    """A constant as every language declares it.
-
-    Attributes
-    ----------
-    name : str
-    form : "bool", "signed", "unsigned", "real", "bits" or "string"
-        An integer is a vector of its own width and sign, so that it can be compared with a field.
-        "bits" is a vector with the bits of a float. A string is its bytes on the wire.
-    value : int, float or bytes
-    bits : int
-        Width of the vector; 0 for other forms.
-    remark : str
-        Type, value and unit, for a comment; empty if the declaration shows all of them.
-    """
+    """A constant as every language declares it."""
 
     name: str
+    # An integer is a vector of its own width and sign, so that it can be compared with a field.
+    # "bits" is a vector with the bits of a float. A string is its bytes on the wire.
     form: Form
     value: Any
-    bits: int = 0
+    bits: int = 0  # Width of the vector; 0 for other forms.
+    # Type, value and unit, for a comment; empty if the declaration shows all of them.
     remark: str = ""
 
     @property
@@ -85,10 +66,7 @@ def named_constants(
     The message's own constants keep their names, unless these would hide names that VHDL code needs
     (`ERROR` is a severity, and `NS` a unit). Names of other constants start with their type's name.
 
-    Parameters
-    ----------
-    taken : iterable of str
-        Names that no constant may get, in lower case.
+    * `taken`: names that no constant may get, in lower case.
     """
     found: dict[str, tuple[Message, Constant]] = {}
     hiding = {*USED, *PREDEFINED, *taken}
@@ -119,14 +97,10 @@ def declarations(
 
     Each type's constants have a title, and each constant the comment of its definition.
 
-    Parameters
-    ----------
-    taken : iterable of str
-        As for :func:`named_constants`.
-    mark : str
-        The comment mark of the language.
-    write : callable
-        Writes a declaration; the second argument is the length of the longest name of the type.
+    * `taken`: as for :func:`named_constants`.
+    * `mark`: the comment mark of the language.
+    * `write`: writes a declaration; the second argument is the length of the longest name of the
+      type.
     """
     named = list(named)
     used = {*taken, *(entry.name.lower() for entry in named)}

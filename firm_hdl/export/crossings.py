@@ -80,12 +80,8 @@ _ECP5 = {"IDDRX1F", "ODDRX1F", "DELAYG"}
 def constraints(design: Design, *, name: str, module: str) -> dict[str, str]:
     """Write the constraints of a design; no files, if it has no such FIFO, or cells of the ECP5.
 
-    Parameters
-    ----------
-    name : str
-        Of the files, ``NAME.xdc`` and ``NAME.sdc``.
-    module : str
-        The outermost module in Verilog.
+    * `name`: of the files, ``NAME.xdc`` and ``NAME.sdc``.
+    * `module`: the outermost module in Verilog.
     """
     paths = list(_fifos(design, design.top, ()))
     items = (item for each in design.modules.values() for item in each.items)

@@ -31,29 +31,18 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BuiltDesign:
-    """The folder of a design.
-
-    Attributes
-    ----------
-    folder : Path
-    was_current : bool
-        The folder was current, and nothing was written.
-    kept : tuple of str
-        Outdated files that the user changed, and that stay; paths in the folder.
-    """
+    """The folder of a design."""
 
     folder: Path
-    was_current: bool
+    was_current: bool  # The folder was current, and nothing was written.
+    # Outdated files that the user changed, and that stay; paths in the folder.
     kept: tuple[str, ...] = ()
 
 
 def design_folder(out: str | os.PathLike[str], name: str) -> Path:
     """Return the folder of a design.
 
-    Raises
-    ------
-    UserError
-        If there is such a folder, and firm-hdl did not make it.
+    Raises `UserError` if there is such a folder, and firm-hdl did not make it.
     """
     folder = Path(out, name)
     check_folder(folder.parent, folder)
@@ -68,18 +57,10 @@ def verilog_module(name: str) -> str:
 def verilog_file(design: Design, *, name: str, header: str) -> dict[str, str]:
     """Write a design in Verilog, and the constraints of FIFOs that cross clock domains.
 
-    Parameters
-    ----------
-    design : Design
-    name : str
-        Name of the VHDL entity; the module is ``NAME_verilog``.
-    header : str
-        Lines of the comment at the head of the file, without comment marks.
+    * `name`: name of the VHDL entity; the module is ``NAME_verilog``.
+    * `header`: lines of the comment at the head of the file, without comment marks.
 
-    Returns
-    -------
-    dict of str to str
-        The text, by the file's path in the folder of the design, as for all files here.
+    Returns: the text, by the file's path in the folder of the design, as for all files here.
     """
     module = verilog_module(name)
     return {
@@ -105,18 +86,12 @@ def core_file(
 ) -> dict[str, str]:
     """Write a core of FuseSoC: the VHDL by default, or the Verilog.
 
-    Parameters
-    ----------
-    name : str
-        Name of the VHDL entity, and of the core.
-    vhdl : iterable of str
-        Files in ``vhdl/``, in compile order.
-    kind, description : str
-        Library of the core, such as ``"node"``, and what the design is, for people.
-    more : mapping or None
-        More entries of the core by section, such as ``targets``.
-    change : callable or None
-        Called with the sections, and returns them as they are written.
+    * `name`: name of the VHDL entity, and of the core.
+    * `vhdl`: files in ``vhdl/``, in compile order.
+    * `kind`, `description`: library of the core, such as ``"node"``, and what the design is, for
+      people.
+    * `more`: more entries of the core by section, such as ``targets``.
+    * `change`: called with the sections, and returns them as they are written.
     """
     module = verilog_module(name)
     sections: dict[str, dict[str, Any]] = {
@@ -154,12 +129,8 @@ def shared_unit(files: Mapping[str, Iterable[str]]) -> str:
 def inputs_of_design(facts: Mapping[str, Any], design: str) -> dict[str, Any]:
     """Return all that the files of a design depend on.
 
-    Parameters
-    ----------
-    facts : mapping
-        What the manifest says of the design.
-    design : str
-        The design, as RTLIL of Amaranth.
+    * `facts`: what the manifest says of the design.
+    * `design`: the design, as RTLIL of Amaranth.
     """
     return inputs_of({**facts, "design_sha256": digest(design)})
 
@@ -175,23 +146,14 @@ def write_design(
 ) -> BuiltDesign:
     """Write the folder of a design, if it is not current.
 
-    Parameters
-    ----------
-    folder : Path
-        As :func:`design_folder` returns it.
-    inputs : mapping
-        As :func:`inputs_of_design` returns them.
-    facts, ports
-        What the manifest says of the design and of its ports.
-    make_files : callable
-        Returns all files but the manifest: texts by paths in the folder.
-    force : bool
-        Write the folder even if it is current.
+    * `folder`: as :func:`design_folder` returns it.
+    * `inputs`: as :func:`inputs_of_design` returns them.
+    * `facts`, `ports`: what the manifest says of the design and of its ports.
+    * `make_files`: returns all files but the manifest: texts by paths in the folder.
+    * `force`: write the folder even if it is current.
 
-    Raises
-    ------
-    UserError
-        If something of the user's is in the place of a file, or the folder cannot be written.
+    Raises `UserError` if something of the user's is in the place of a file, or the folder cannot be
+    written.
     """
 
     def make() -> tuple[Mapping[str, str], dict[str, Any]]:

@@ -50,10 +50,7 @@ def lengths(plan: Plan) -> Iterator[tuple[str, ...]]:
 def contract(plan: Plan, recovery: Mapping[str, int]) -> Iterator[str]:
     """Yield the rules that a design around the converters has to know, a sentence or two each.
 
-    Parameters
-    ----------
-    recovery : mapping
-        As the manifest has it.
+    * `recovery`: as the manifest has it.
     """
     if plan.wire == "cdr":
         yield (

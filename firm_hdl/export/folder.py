@@ -66,26 +66,15 @@ def build_folder(
 ) -> tuple[str, ...] | None:
     """Write a folder of files, unless it is current.
 
-    Parameters
-    ----------
-    out, folder : Path
-        The path that the user named, and the folder below it.
-    inputs : mapping
-        What the files depend on, as the manifest has it.
-    make : callable
-        Returns texts by paths in the folder, and the manifest, which has their sums as ``files``.
-    force : bool
-        Write the folder even if it is current.
+    * `out`, `folder`: the path that the user named, and the folder below it.
+    * `inputs`: what the files depend on, as the manifest has it.
+    * `make`: returns texts by paths in the folder, and the manifest, which has their sums as
+      ``files``.
+    * `force`: write the folder even if it is current.
 
-    Returns
-    -------
-    tuple of str or None
-        Outdated files that are the user's by now, and stay; `None` if the folder was current.
+    Returns: outdated files that are the user's by now, and stay; `None` if the folder was current.
 
-    Raises
-    ------
-    BuildError
-        If something of the user's is in the way, or the folder cannot be written.
+    Raises `BuildError` if something of the user's is in the way, or the folder cannot be written.
     """
     if not force and _is_current(out, folder, inputs):
         return None
@@ -97,10 +86,7 @@ def build_folder(
 def check_folder(out: Path, folder: Path) -> dict[str, Any]:
     """Return the manifest of a folder that can be written; an empty mapping if it is new.
 
-    Raises
-    ------
-    BuildError
-        If firm-hdl did not make the folder, or it cannot be read.
+    Raises `BuildError` if firm-hdl did not make the folder, or it cannot be read.
     """
     with _reported(folder), suppress(FileNotFoundError), _opened(out, folder) as root:
         return _manifest_to_replace(root, folder)

@@ -85,36 +85,18 @@ _AXI = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ip:
-    """What is packaged.
+    """What is packaged."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the IP, a word of Verilog.
-    library : str
-        Second part of the name: the distribution of the types, or ``node``.
-    module : str
-        The outermost module.
-    files : mapping of str to str
-        Verilog by file name, the outermost module last.
-    ports : sequence
-        Each with `name`, `direction` ("in" or "out") and `width`.
-    title, description : str
-        For people, in one line.
-    table : RegisterMap or None
-        The registers behind ``s_axi``, if there are any.
-    defaults : mapping of str to int
-        Values of inputs that are not connected, beside those that AXI has. All others are 0.
-    """
-
-    name: str
-    library: str
-    module: str
-    files: Mapping[str, str]
-    ports: Sequence[Any]
+    name: str  # Name of the IP, a word of Verilog.
+    library: str  # Second part of the name: the distribution of the types, or `node`.
+    module: str  # The outermost module.
+    files: Mapping[str, str]  # Verilog by file name, the outermost module last.
+    ports: Sequence[Any]  # Each with `name`, `direction` ("in" or "out") and `width`.
+    # For people, in one line.
     title: str
     description: str
-    table: RegisterMap | None = None
+    table: RegisterMap | None = None  # The registers behind `s_axi`, if there are any.
+    # Values of inputs that are not connected, beside those that AXI has. All others are 0.
     defaults: Mapping[str, int] = field(default_factory=dict)
 
     @property
@@ -136,25 +118,14 @@ class Ip:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bus:
-    """A bus interface of an IP.
-
-    Attributes
-    ----------
-    name : str
-    kind : str
-        Name of its definition in Vivado: ``axis`` and ``aximm`` are AXI4-Stream and AXI4-Lite.
-    mode : "master" or "slave"
-    ports : mapping of str to str
-        Names of ports, by the names that the definition has for them.
-    parameters : mapping of str to str
-        Those of Vivado.
-    """
+    """A bus interface of an IP."""
 
     name: str
+    # Name of its definition in Vivado: `axis` and `aximm` are AXI4-Stream and AXI4-Lite.
     kind: Literal["axis", "aximm", "clock", "reset", "interrupt"]
     mode: Literal["master", "slave"]
-    ports: Mapping[str, str]
-    parameters: Mapping[str, str] = field(default_factory=dict)
+    ports: Mapping[str, str]  # Names of ports, by the names that the definition has for them.
+    parameters: Mapping[str, str] = field(default_factory=dict)  # Those of Vivado.
 
     @property
     def definition(self) -> str:
@@ -202,12 +173,7 @@ def _streams(by_name: Mapping[str, Any]) -> Iterator[Bus]:
 def ip_files(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
     """Return the files of a folder's IP, by paths in it.
 
-    Parameters
-    ----------
-    tool : Tool
-    name : str
-        Name of the folder, with which names of designs begin.
-    designs : sequence of Ip
+    * `name`: name of the folder, with which names of designs begin.
     """
     designs = [_for_tool(tool, ip) for ip in designs]
     if tool == "litex":
@@ -376,10 +342,7 @@ def _defaults(ip: Ip, buses: Sequence[Bus]) -> dict[str, int]:
 def write(converters: Converters, texts: Mapping[str, str]) -> Output:
     """Write the IP of a type: each converter, and each with registers if there are some.
 
-    Parameters
-    ----------
-    texts : mapping of str to str
-        The Verilog, by the name of the file.
+    * `texts`: the Verilog, by the name of the file.
     """
     plan, message = converters.plan, converters.message.name
     library = str(converters.inputs["distro"])

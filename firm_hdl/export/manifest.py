@@ -57,14 +57,9 @@ def manifest_of(
 ) -> dict[str, Any]:
     """Describe a folder.
 
-    Parameters
-    ----------
-    inputs : mapping
-        As :func:`inputs_of` returns them.
-    files : mapping of str to str
-        Text of every other file in the folder, by name.
-    sections : mapping
-        What tools and people have to know of the design.
+    * `inputs`: as :func:`inputs_of` returns them.
+    * `files`: text of every other file in the folder, by name.
+    * `sections`: what tools and people have to know of the design.
     """
     return {
         "format": FORMAT,

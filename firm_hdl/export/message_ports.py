@@ -44,28 +44,16 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordPort:
-    """A message at the top level of a design.
+    """A message at the top level of a design."""
 
-    Attributes
-    ----------
-    name, ready : str
-        Names of the record with data and valid, and of the record with ready.
-    member : str
-        The member, such as ``subscribe.cmd_vel``.
-    message : Message
-    direction : Direction
-        ``deserializer`` if the message comes out of the design.
-    plan : Plan
-    ports : mapping of str to Port
-        The plain ports of the message's leaves, by their names at the design.
-    """
-
+    # Names of the record with data and valid, and of the record with ready.
     name: str
     ready: str
-    member: str
+    member: str  # The member, such as `subscribe.cmd_vel`.
     message: Message
-    direction: Direction
+    direction: Direction  # `deserializer` if the message comes out of the design.
     plan: Plan
+    # The plain ports of the message's leaves, by their names at the design.
     ports: Mapping[str, Port]
 
     def tree(self, reserved: Collection[str] = ()) -> Tree:
@@ -74,20 +62,10 @@ class RecordPort:
 
 
 class FoundMessage(NamedTuple):
-    """A message among the members of a design.
+    """A message among the members of a design."""
 
-    Attributes
-    ----------
-    path : tuple of str
-        The member.
-    direction : Direction
-        ``deserializer`` if the message comes out of the design.
-    message : Message
-    plan : Plan
-    """
-
-    path: tuple[str, ...]
-    direction: Direction
+    path: tuple[str, ...]  # The member.
+    direction: Direction  # `deserializer` if the message comes out of the design.
     message: Message
     plan: Plan
 
@@ -97,15 +75,9 @@ def message_ports(
 ) -> list[RecordPort]:
     """List the messages that come out of a design, and go into it.
 
-    Parameters
-    ----------
-    ports : sequence of ComponentPort
-        All ports of the top level.
+    * `ports`: all ports of the top level.
 
-    Raises
-    ------
-    UserError
-        If two types of the design would have one package of records.
+    Raises `UserError` if two types of the design would have one package of records.
     """
     taken = [port.name for port in ports]
     paths = [each.path for each in found]
@@ -166,21 +138,12 @@ def record_files(
 ) -> dict[str, str]:
     """Write the packages of all messages, and the entity ``NAME_records``.
 
-    Parameters
-    ----------
-    name : str
-        The entity with plain ports.
-    kind : str
-        What the design is: ``"node"``.
-    vhdl_ports : mapping of str to str
-        Names of its ports, by those of the netlist.
-    header : str
-        Lines of a comment at the head of the entity's file.
+    * `name`: the entity with plain ports.
+    * `kind`: what the design is: ``"node"``.
+    * `vhdl_ports`: names of its ports, by those of the netlist.
+    * `header`: lines of a comment at the head of the entity's file.
 
-    Returns
-    -------
-    dict of str to str
-        Texts by file name, in compile order; they compile after the design.
+    Returns: texts by file name, in compile order; they compile after the design.
     """
     files: dict[str, str] = {}
     # An actual is the port of the same name, unless it is a part of a record.
@@ -238,19 +201,11 @@ def struct_files(
 ) -> dict[str, str]:
     """Write the packages of all messages, the module ``NAME_sv``, and the list of files.
 
-    Parameters
-    ----------
-    module : str
-        The module of Verilog, ``MODULE.v`` in the folder above.
-    kind : str
-        What the design is: ``"node"``.
-    header : str
-        Lines of a comment at the head of the module's file.
+    * `module`: the module of Verilog, ``MODULE.v`` in the folder above.
+    * `kind`: what the design is: ``"node"``.
+    * `header`: lines of a comment at the head of the module's file.
 
-    Returns
-    -------
-    dict of str to str
-        Texts by file name, in compile order; then ``files.f`` and waivers of Verilator.
+    Returns: texts by file name, in compile order; then ``files.f`` and waivers of Verilator.
     """
     files: dict[str, str] = {}
     for each in messages:

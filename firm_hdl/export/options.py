@@ -30,35 +30,19 @@ Verilator, and instantiation templates. ``documents``: the datasheet.
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """The options of a build.
+    """The options of a build."""
 
-    Attributes
-    ----------
-    wire : "ros1", "cdr" or None
-        Wire format; `None`: that of the distribution.
-    bus_bytes, max_message_bytes : int
-        As for the converters.
-    ports : "records" or "flat"
-        "records" adds entities with records and modules with structs; "flat" is for tools that do
-        not support them.
-    extras : frozenset of str
-        Some of :data:`EXTRAS`.
-    registers : bool
-        Also write converters with registers on AXI4-Lite.
-    leaf_ports : "plain" or "axis"
-        "axis": also write modules whose leaves are AXI4-Stream.
-    ip : "vivado", "quartus", "litex" or None
-        Also write IP for a tool, with these leaves.
-    """
-
-    wire: Wire | None = None
+    wire: Wire | None = None  # Wire format; `None`: that of the distribution.
+    # As for the converters.
     bus_bytes: int = 8
     max_message_bytes: int = DEFAULT_MAX_MESSAGE_BYTES
+    # "records" adds entities with records and modules with structs; "flat" is for tools that do not
+    # support them.
     ports: Ports = "records"
-    extras: frozenset[Extra] = frozenset()
-    registers: bool = False
-    leaf_ports: LeafPorts = "plain"
-    ip: Ip | None = None
+    extras: frozenset[Extra] = frozenset()  # Some of `EXTRAS`.
+    registers: bool = False  # Also write converters with registers on AXI4-Lite.
+    leaf_ports: LeafPorts = "plain"  # "axis": also write modules whose leaves are AXI4-Stream.
+    ip: Ip | None = None  # Also write IP for a tool, with these leaves.
 
     @property
     def facts(self) -> dict[str, Any]:

@@ -150,33 +150,18 @@ def _router(block: Any) -> Iterator[Pin]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
-    """A kind of packet part.
+    """A kind of packet part."""
 
-    Attributes
-    ----------
-    text : str
-        What it does, for people.
-    component : callable
-        Makes the component of the parameters, and for a gate of a message.
-    parameters : tuple of str
-        Those of the component, which are options of the command line.
-    in_name : tuple of str
-        The parameters that are in the name of a part.
-    pins : callable
-        Lists the ports of a component, except clocks and resets.
-    clocks : mapping of str to pair of str
-        Ports of each clock domain: its clock, and its reset, active low.
-    codes : enumeration or None
-        Values of a port, for the manifest.
-    """
-
-    text: str
+    text: str  # What it does, for people.
+    # Makes the component of the parameters, and for a gate of a message.
     component: Callable[..., wiring.Component]
-    parameters: tuple[str, ...]
-    in_name: tuple[str, ...]
+    parameters: tuple[str, ...]  # Those of the component, which are options of the command line.
+    in_name: tuple[str, ...]  # The parameters that are in the name of a part.
+    # Lists the ports of a component, except clocks and resets.
     pins: Callable[[Any], Iterator[Pin]]
+    # Ports of each clock domain: its clock, and its reset, active low.
     clocks: Mapping[str, tuple[str, str]] = field(default_factory=lambda: AXIS_CLOCKS)
-    codes: Any = None
+    codes: Any = None  # Values of a port, for the manifest.
 
 
 _STORE = ("memory_bytes", "packets", "when_full")
@@ -268,21 +253,14 @@ def make_part(
 ) -> Part:
     """Make a packet part.
 
-    Parameters
-    ----------
-    kind : str
-        One of :data:`KINDS`.
-    message : Message or None
-        What a gate forwards; `None` for other parts.
-    name : str or None
-        Default: the kind, the message type, and the widths of buses, such as ``packet_fifo_8``.
-    parameters
-        Those of the component, such as `bus_bytes`; see :mod:`firm_hdl.gateware.packets`.
+    * `kind`: one of :data:`KINDS`.
+    * `message`: what a gate forwards; `None` for other parts.
+    * `name`: default: the kind, the message type, and the widths of buses, such as
+      ``packet_fifo_8``.
+    * `parameters`: those of the component, such as `bus_bytes`; see
+      :mod:`firm_hdl.gateware.packets`.
 
-    Raises
-    ------
-    UserError
-        If the part cannot have these parameters or this name.
+    Raises `UserError` if the part cannot have these parameters or this name.
     """
     if name is not None and legal(name) != name:
         raise UserError(f"The VHDL of every part uses the name '{name}' itself")
@@ -303,10 +281,7 @@ def make_part(
 def part_ports(part: Part) -> tuple[Port, ...]:
     """List the ports of the top level of a part, clocks and resets first.
 
-    Raises
-    ------
-    UserError
-        If the part has more input bits than Amaranth elaborates.
+    Raises `UserError` if the part has more input bits than Amaranth elaborates.
     """
     texts = ("Clock; the rising edge is active.", "Synchronous reset, active low.")
     ports = [
@@ -334,17 +309,10 @@ def build_part(
 ) -> BuiltDesign:
     """Write the design of a packet part into a folder of its own, ``out/NAME``.
 
-    Parameters
-    ----------
-    out : path
-        Created if it does not exist.
-    force : bool
-        Write the folder even if it is current.
+    * `out`: created if it does not exist.
+    * `force`: write the folder even if it is current.
 
-    Raises
-    ------
-    UserError
-        If the part is too large, or the folder cannot be written.
+    Raises `UserError` if the part is too large, or the folder cannot be written.
     """
     name, codes = part.name, KINDS[part.kind].codes
     folder = design_folder(out, name)

@@ -21,10 +21,7 @@ _MOST_FIELDS = 40
 def write(converters: Converters, sections: Mapping[str, Any]) -> Output:
     """Write the readme of a type's folder.
 
-    Parameters
-    ----------
-    sections : mapping
-        The sections of the manifest.
+    * `sections`: the sections of the manifest.
     """
     plan, inputs, vhdl = converters.plan, converters.inputs, sections["vhdl"]
     bench = vhdl["bench"]

@@ -54,10 +54,7 @@ def why_no_record(message: Message, plan: Plan) -> str:
 def record_ports(plan: Plan, direction: Direction, bits: int) -> tuple[Port, ...]:
     """List the ports of a top level: clock, reset, packets, the record, status.
 
-    Parameters
-    ----------
-    bits : int
-        Size of the record.
+    * `bits`: size of the record.
     """
     ports = [port for port in ports_of(plan, direction) if port.leaf is None]
     status = next(k for k, port in enumerate(ports) if port.name.startswith("m_axis_status"))

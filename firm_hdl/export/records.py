@@ -20,29 +20,15 @@ __all__ = ["Member", "Record", "head_of", "message_records", "shared_records"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Member:
-    """A member of a record.
-
-    Attributes
-    ----------
-    name : str
-    stem : str
-        Stem of its type.
-    is_leaf : bool
-        Whether the member is a stream, so that its ready is a single bit.
-    package : str
-        The other message type's package that declares the type; empty if there is no such package.
-    comment : str
-        The comment of the definition.
-    remark : str
-        Text for a comment after the member.
-    """
+    """A member of a record."""
 
     name: str
-    stem: str
-    is_leaf: bool = False
+    stem: str  # Stem of its type.
+    is_leaf: bool = False  # Whether the member is a stream, so that its ready is a single bit.
+    # The other message type's package that declares the type; empty if there is no such package.
     package: str = ""
-    comment: str = ""
-    remark: str = ""
+    comment: str = ""  # The comment of the definition.
+    remark: str = ""  # Text for a comment after the member.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,14 +89,9 @@ def _member(node: Node, package: Package) -> Member:
 def head_of(package: Package, plan: Plan, *, what: str, advice: str, mark: str) -> Iterator[str]:
     """Yield the comment at the head of a message type's package.
 
-    Parameters
-    ----------
-    what : str
-        Name of records in the language.
-    advice : str
-        End of the sentence that says that all converters share the file.
-    mark : str
-        The comment mark of the language.
+    * `what`: name of records in the language.
+    * `advice`: end of the sentence that says that all converters share the file.
+    * `mark`: the comment mark of the language.
     """
     base, message = package.base, package.message
     yield from remark(

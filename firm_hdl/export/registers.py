@@ -30,10 +30,7 @@ __all__ = ["register_circuits", "register_maps", "register_ports", "write"]
 def register_maps(message: Message, plan: Plan) -> dict[Direction, MessageMap]:
     """Lay out the registers of a type.
 
-    Raises
-    ------
-    BuildError
-        If it has no fields of fixed size, or too many.
+    Raises `BuildError` if it has no fields of fixed size, or too many.
     """
     try:
         return {way: message_map(message, plan, way) for way in DIRECTIONS}

@@ -60,10 +60,7 @@ def _ascii(text: str) -> str:
 def origin(source: Field, name: str) -> str:
     """Describe the ROS field of a record member: type and unit, and the name if it is another.
 
-    Parameters
-    ----------
-    name : str
-        Name of the member in the record.
+    * `name`: name of the member in the record.
     """
     what = str(source.type)
     if source.name != name:

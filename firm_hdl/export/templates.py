@@ -25,12 +25,8 @@ def text_of(name: str) -> str:
 def render(template: str, **values: Any) -> str:
     """Fill a template.
 
-    Parameters
-    ----------
-    template : str
-        Path in this package, without ``.j2``, such as ``"vhdl/bench.vhd"``.
-    **values
-        The variables of the template.
+    * `template`: path in this package, without ``.j2``, such as ``"vhdl/bench.vhd"``.
+    * `**values`: the variables of the template.
     """
     return _environment().get_template(f"{template}.j2").render(values)
 

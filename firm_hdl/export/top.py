@@ -57,30 +57,15 @@ _RESERVED = ("s_axis", "m_axis", "m_axis_status")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Port:
-    """A port of a top level.
-
-    Attributes
-    ----------
-    name : str
-    direction : "in" or "out"
-    width : int
-        Width in bits.
-    meaning : str
-        Description for people.
-    signed : bool
-    leaf : int or None
-        Index of the leaf that the port belongs to; `None` for other ports.
-    member : str
-        Member of the leaf's stream: ``data``, ``last``, ``valid`` or ``ready``; empty for other
-        ports.
-    """
+    """A port of a top level."""
 
     name: str
     direction: Literal["in", "out"]
-    width: int
-    meaning: str
+    width: int  # Width in bits.
+    meaning: str  # Description for people.
     signed: bool = False
-    leaf: int | None = None
+    leaf: int | None = None  # Index of the leaf that the port belongs to; `None` for other ports.
+    # Member of the leaf's stream: `data`, `last`, `valid` or `ready`; empty for other ports.
     member: str = ""
 
 
@@ -200,28 +185,17 @@ def _meaning(leaf: Leaf) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pin:
-    """A port, and the value behind it.
+    """A port, and the value behind it."""
 
-    Attributes
-    ----------
-    port : Port
-        Its name, direction, width and sign count.
-    value : Value
-    is_count : bool
-        The port is `tkeep`, and `value` is the number of bytes.
-    """
-
-    port: Any
+    port: Any  # Its name, direction, width and sign count.
     value: Value
-    is_count: bool = False
+    is_count: bool = False  # The port is `tkeep`, and `value` is the number of bytes.
 
 
 def check_input_bits(what: str, ports: Iterable[Any]) -> None:
     """Refuse a design with more input bits than Amaranth elaborates.
 
-    Raises
-    ------
-    UserError
+    Raises `UserError`.
     """
     bits = sum(port.width for port in ports if port.direction == "in")
     if bits > MAX_INPUT_BITS:
@@ -236,19 +210,11 @@ class PlainTop(Component):
     On an input, ``tkeep`` is a contiguous run of ones from lane 0, and only its value in the last
     beat of a packet matters.
 
-    Parameters
-    ----------
-    inside : elaboratable
-        The component.
-    name : str
-        Name of its instance.
-    ports : iterable of Port
-    pins : iterable of Pin
-        Those of all ports but clocks and resets.
-    clocks : mapping of str to pair of str
-        Ports of each clock domain: its clock, and its synchronous reset, active low.
-    also_resets : Value or None
-        Resets all domains while it is high.
+    * `inside`: the component.
+    * `name`: name of its instance.
+    * `pins`: those of all ports but clocks and resets.
+    * `clocks`: ports of each clock domain: its clock, and its synchronous reset, active low.
+    * `also_resets`: resets all domains while it is high.
     """
 
     def __init__(

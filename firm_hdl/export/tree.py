@@ -77,40 +77,22 @@ class Node:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Package:
-    """The package of a message type.
-
-    Attributes
-    ----------
-    message : Message
-    name : str
-    base : str
-        Prefix of the names of its types.
-    node : Node
-        A node with this message type.
-    needs : tuple of str
-        Packages of the types of its fields.
-    """
+    """The package of a message type."""
 
     message: Message
     name: str
-    base: str
-    node: Node
-    needs: tuple[str, ...]
+    base: str  # Prefix of the names of its types.
+    node: Node  # A node with this message type.
+    needs: tuple[str, ...]  # Packages of the types of its fields.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tree:
-    """A message's records.
-
-    Attributes
-    ----------
-    root : Node
-    packages : tuple of Package
-        Packages of all message types in the message, each after those that it needs. The message's
-        own package comes last.
-    """
+    """A message's records."""
 
     root: Node
+    # Packages of all message types in the message, each after those that it needs. The message's
+    # own package comes last.
     packages: tuple[Package, ...]
 
     @property
@@ -176,10 +158,7 @@ def taken_names(package: Package, plan: Plan) -> frozenset[str]:
 def tree_of(message: Message, plan: Plan, reserved: Collection[str] = ()) -> Tree:
     """Determine the records of a message, and all names in them.
 
-    Parameters
-    ----------
-    reserved : collection of str
-        Names that a language needs in all packages, in addition to VHDL's; in lower case.
+    * `reserved`: names that a language needs in all packages, in addition to VHDL's; in lower case.
     """
     paths: _Paths = {}
     for index, leaf in enumerate(plan.leaves):

@@ -30,23 +30,15 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Distro:
-    """A ROS distribution.
-
-    Attributes
-    ----------
-    store : rosbags.typesys.Stores
-        The rosbags type store with its types.
-    has_events : bool
-        Whether services have a message for introspection, ``_Event``: since iron.
-    wchar_bytes : int
-        Size of a ``wchar`` of IDL as the default middleware writes it. It is 4 with Fast CDR 1, up
-        to iron, and 2 with Fast CDR 2.
-    """
+    """A ROS distribution."""
 
     name: str
     dialect: Dialect
-    store: Stores
+    store: Stores  # The rosbags type store with its types.
+    # Whether services have a message for introspection, `_Event`: since iron.
     has_events: bool = False
+    # Size of a `wchar` of IDL as the default middleware writes it. It is 4 with Fast CDR 1, up to
+    # iron, and 2 with Fast CDR 2.
     wchar_bytes: int = 2
 
 
@@ -101,10 +93,7 @@ _ROS1_BUILTINS = {
 def replacement_of(distro: str) -> str:
     """Say which distribution to take instead of one whose types are not embedded.
 
-    Returns
-    -------
-    str
-        Empty if `distro` is not the name of such a distribution.
+    Returns: empty if `distro` is not the name of such a distribution.
     """
     name = distro.strip().lower()
     if name == "rolling":

@@ -83,10 +83,7 @@ _ITEM_WORD = re.compile(r"[^#,\]]*[^\s#,\]]|")
 def explain(error: UnexpectedInput, line: str, dialect: Dialect) -> tuple[int, int, str]:
     """Put a syntax error into words.
 
-    Returns
-    -------
-    tuple of int, int and str
-        Start and end of the words that are wrong, as offsets in the line, and the message.
+    Returns: start and end of the words that are wrong, as offsets in the line, and the message.
     """
     start = place_of(error, len(line.rstrip()))
     assert isinstance(error, UnexpectedCharacters | UnexpectedToken)

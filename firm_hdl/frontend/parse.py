@@ -50,16 +50,10 @@ __all__ = [
 def condense(lines: list[str]) -> tuple[str, str | None]:
     """Take the unit out of comment lines and join what is left.
 
-    Parameters
-    ----------
-    lines : list of str
-        Comment lines without their ``#``.
+    * `lines`: comment lines without their ``#``.
 
-    Returns
-    -------
-    tuple of str and (str or None)
-        The comment and its unit. Common indentation and empty lines at both ends are removed, and
-        several empty lines become one. The unit is the text in brackets, if there is exactly one.
+    Returns: the comment and its unit. Common indentation and empty lines at both ends are removed,
+    and several empty lines become one. The unit is the text in brackets, if there is exactly one.
     """
     units = list(_units("\n".join(lines)))
     unit = None
@@ -99,14 +93,9 @@ class CommentCollector:
     def add(self, comment: str, *, is_indented: bool, is_alone: bool) -> None:
         """Take one comment.
 
-        Parameters
-        ----------
-        comment : str
-            The whole comment, from its first ``#`` to the end of the line.
-        is_indented : bool
-            Whether blanks precede the comment. Ignored unless `is_alone`.
-        is_alone : bool
-            Whether the line has no definition.
+        * `comment`: the whole comment, from its first ``#`` to the end of the line.
+        * `is_indented`: whether blanks precede the comment. Ignored unless `is_alone`.
+        * `is_alone`: whether the line has no definition.
         """
         text = comment.lstrip("#").rstrip()
         if not is_alone:
@@ -123,10 +112,7 @@ class CommentCollector:
     def claim(self) -> list[str]:
         """Give a new definition the comments above it and in its line.
 
-        Returns
-        -------
-        list of str
-            The list still grows while indented comment lines follow.
+        The list that is returned still grows while indented comment lines follow.
         """
         self._last, self._pending = self._pending, []
         return self._last
@@ -149,17 +135,11 @@ def read_message(
 ) -> tuple[MessageSyntax, list[Diagnostic]]:
     """Parse a ``.msg`` text, leaving out the lines with errors.
 
-    Parameters
-    ----------
-    lines : iterable of tuple of int and str
-        The lines from `lines_of` that belong to the message; by default all.
-    text : str or None
-        The text of the message, if it is not the whole source.
+    * `lines`: the lines from `lines_of` that belong to the message; by default all.
+    * `text`: the text of the message, if it is not the whole source.
 
-    Returns
-    -------
-    tuple of MessageSyntax and list of Diagnostic
-        The syntax of the correct lines, and the errors of the others, in the order of the text.
+    Returns: the syntax of the correct lines, and the errors of the others, in the order of the
+    text.
     """
     parser = _parser(dialect)
     comments = CommentCollector()
@@ -226,11 +206,8 @@ def _parser(dialect: Dialect) -> Lark:
 def lines_of(text: str, dialect: Dialect) -> Iterator[tuple[int, str]]:
     """Split a text as ROS does.
 
-    Yields
-    ------
-    tuple of int and str
-        Offset of a line, and the line without its line end. The text after the last line end is a
-        line, too; it may be empty.
+    Yields the offset of a line, and the line without its line end. The text after the last line end
+    is a line, too; it may be empty.
     """
     if dialect == "ros2":
         text = text.replace("\t", " ")  # As in rosidl_adapter, even in texts and comments.
@@ -262,10 +239,7 @@ def _described(member: MemberSyntax, lines: list[str]) -> MemberSyntax:
 class _Reader:
     """Turns the parse tree of one line into syntax.
 
-    Parameters
-    ----------
-    offset : int
-        Where the line starts in the source.
+    * `offset`: where the line starts in the source.
     """
 
     def __init__(self, source: Source, offset: int) -> None:

@@ -59,26 +59,10 @@ class RecordingOrigin:
 
     The file is read at once, and closed. Where it defines a type twice, the first text counts.
 
-    Parameters
-    ----------
-    path : str or path
-    others : iterable of Origin
-        Have the types of topics that were recorded without their definitions.
+    * `others`: have the types of topics that were recorded without their definitions.
 
-    Attributes
-    ----------
-    path : str
-    dialect : "ros1" or "ros2"
-    distro : str or None
-        The distribution that the recording names as its origin, if it is one of `DISTROS`.
-    unusable : dict of str to str
-        The types of topics that cannot be used, by their recorded names, with a sentence that says
-        why.
-
-    Raises
-    ------
-    DefinitionError
-        If the file cannot be read, or if no type in it can be used. It has no span.
+    Raises `DefinitionError` if the file cannot be read, or if no type in it can be used. It has no
+    span.
     """
 
     def __init__(self, path: str | os.PathLike[str], others: Iterable[Origin] = ()) -> None:
@@ -86,6 +70,7 @@ class RecordingOrigin:
         self.path, self.dialect = recording.path, recording.dialect
         distro = DISTROS.get(recording.distro)
         is_known = distro is not None and distro.dialect == self.dialect
+        # The distribution that the recording names as its origin, if it is one of `DISTROS`.
         self.distro = recording.distro if is_known else None
         # Parts of packages: their types hide no others.
         self.packages: dict[str, PackagePlace] = {}
@@ -98,6 +83,8 @@ class RecordingOrigin:
             reasons.setdefault(schema.type, self._read(schema))
         others = list(others)
         self._named = distro_of(others)
+        # The types of topics that cannot be used, by their recorded names, with a sentence that
+        # says why.
         self.unusable: dict[str, str] = {}
         self._refused: dict[_Name, str] = {}
         first: dict[str, Topic] = {}

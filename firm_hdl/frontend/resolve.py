@@ -73,12 +73,8 @@ class _Entry:
 class Resolver:
     """Resolves the messages of one set of sources, each of them once.
 
-    Parameters
-    ----------
-    has_events : bool
-        Whether services have a message for introspection.
-    wchar_bytes : int
-        Size of a ``wchar`` of IDL.
+    * `has_events`: whether services have a message for introspection.
+    * `wchar_bytes`: size of a ``wchar`` of IDL.
     """
 
     def __init__(
@@ -94,15 +90,9 @@ class Resolver:
     def resolve(self, name: TypeName) -> Message | None:
         """Resolve a message and all that it depends on.
 
-        Returns
-        -------
-        Message or None
-            `None` if no message has that name.
+        Returns: `None` if no message has that name.
 
-        Raises
-        ------
-        DefinitionError
-            With all errors in its text, then those in its dependencies.
+        Raises `DefinitionError`: with all errors in its text, then those in its dependencies.
         """
         entry = self._enter(name)
         if entry is None:
@@ -116,15 +106,10 @@ class Resolver:
     def unit(self, name: TypeName) -> Unit | None:
         """Read the file that declares a message, a service or an action, once.
 
-        Returns
-        -------
-        Unit or None
-            `None` if no file has that name.
+        Returns: `None` if no file has that name.
 
-        Raises
-        ------
-        DefinitionError
-            If the file exists but cannot be read. Errors in its text are in the unit.
+        Raises `DefinitionError` if the file exists but cannot be read. Errors in its text are in
+        the unit.
         """
         if name not in self._units:
             definition = self._sources.find(name.package, name.kind, name.name)

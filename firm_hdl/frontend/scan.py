@@ -37,42 +37,25 @@ _Identity: TypeAlias = tuple[int, int]
 
 @dataclass(slots=True, kw_only=True)
 class PackageFolder:
-    """A folder that is a package, or a part of one.
-
-    Attributes
-    ----------
-    package : str
-    path : str
-    files : dict
-        The paths of the files of each kind and name, which may be the name of no type.
-    wrong : str
-        The reason why the package cannot be used; empty if it can be used.
-    is_part : bool
-        Whether catkin's build made the folder for messages that it adds to the package.
-    """
+    """A folder that is a package, or a part of one."""
 
     package: str
     path: str
+    # The paths of the files of each kind and name, which may be the name of no type.
     files: dict[tuple[Kind, str], list[str]] = field(default_factory=dict)
-    wrong: str = ""
+    wrong: str = ""  # The reason why the package cannot be used; empty if it can be used.
+    # Whether catkin's build made the folder for messages that it adds to the package.
     is_part: bool = False
 
 
 class Scan:
     """One search; links are followed, each folder is looked at once.
 
-    Parameters
-    ----------
-    root : str
-        The folder. It is searched even if it has a file such as ``COLCON_IGNORE``.
-
-    Attributes
-    ----------
-    unreadable : list of str
-        Folders that this user may not read. They may have packages or definitions.
+    * `root`: the folder. It is searched even if it has a file such as ``COLCON_IGNORE``.
     """
 
     def __init__(self, root: str) -> None:
+        # Folders that this user may not read. They may have packages or definitions.
         self.unreadable: list[str] = []
         self._root = root
         self._left = MAX_FOLDERS
@@ -80,10 +63,8 @@ class Scan:
     def packages(self) -> Iterator[PackageFolder]:
         """Yield every package at or below the folder, in order of their paths.
 
-        Raises
-        ------
-        DefinitionError
-            If the folder cannot be read, or has too many folders. It has no span.
+        Raises `DefinitionError` if the folder cannot be read, or has too many folders. It has no
+        span.
         """
         seen: set[_Identity] = set()
         pending = [self._root]

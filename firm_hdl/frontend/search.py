@@ -45,27 +45,18 @@ def open_library(
 ) -> Library:
     """Open a library of all definitions that a command uses.
 
-    Parameters
-    ----------
-    distro : str or None
-        `None`: the distribution that the recordings name, else the newest one of their dialect.
-        Without recordings, the default distribution.
-    paths : iterable of str or path
-        Folders with ROS packages. They are searched first, then those of the environment, then
-        the distribution's own types.
-    bags : iterable of str or path
-        Recordings. If there are any, the types of the library are theirs. What they lack comes from
-        folders, from the distribution if it is named, and what ROS itself adds to services and
-        actions from any distribution.
-    depends : iterable of str or path
-        Folders with packages that others depend on, searched after `paths` or the recordings.
-    environment : mapping or None
-        Variables to read (by default those of the process).
+    * `distro`: `None` is the distribution that the recordings name, else the newest one of their
+      dialect. Without recordings, the default distribution.
+    * `paths`: folders with ROS packages. They are searched first, then those of the environment,
+      then the distribution's own types.
+    * `bags`: recordings. If there are any, the types of the library are theirs. What they lack
+      comes from folders, from the distribution if it is named, and what ROS itself adds to services
+      and actions from any distribution.
+    * `depends`: folders with packages that others depend on, searched after `paths` or the
+      recordings.
+    * `environment`: variables to read (by default those of the process).
 
-    Raises
-    ------
-    DefinitionError
-        If a folder or a recording cannot be used. It has no span.
+    Raises `DefinitionError` if a folder or a recording cannot be used. It has no span.
     """
     folders, files, needed = list(paths), list(bags), [FolderOrigin(path) for path in depends]
     if files:
@@ -106,10 +97,7 @@ def workspace_folders(
 ) -> list[str]:
     """List folders with the given packages, as options for a command: those that count in ROS.
 
-    Parameters
-    ----------
-    environment : mapping or None
-        Variables to read (by default those of the process).
+    * `environment`: variables to read (by default those of the process).
     """
     variables = os.environ if environment is None else environment
     found: dict[str, str] = {}
@@ -173,10 +161,7 @@ def load_all(library: Library, types: Iterable[str]) -> list[Message]:
 
     A service or an action gives all of its messages.
 
-    Raises
-    ------
-    DefinitionError
-        With the errors of all types, including fields without a wire format.
+    Raises `DefinitionError`: with the errors of all types, including fields without a wire format.
     """
     messages: dict[str, Message] = {}
     problems: dict[str, Diagnostic] = {}

@@ -40,21 +40,11 @@ _LINE_END = re.compile("[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]")
 def show(library: Library, name: str) -> str:
     """Print a type and the types in it.
 
-    Parameters
-    ----------
-    library : Library
-    name : str
-        As for `Library.interface`.
+    * `name`: as for `Library.interface`.
 
-    Returns
-    -------
-    str
-        Lines, each with its line end. ``rosmsg show`` itself prints one empty line more.
+    Returns: lines, each with its line end. ``rosmsg show`` itself prints one empty line more.
 
-    Raises
-    ------
-    DefinitionError
-        As `Library.interface` does, or if the text would be too long.
+    Raises `DefinitionError`: as `Library.interface` does, or if the text would be too long.
     """
     interface = library.interface(name)
     printer = _Ros1() if library.dialect == "ros1" else _Ros2(library)

@@ -52,18 +52,10 @@ class Definition:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PackagePlace:
-    """The place of a package.
+    """The place of a package."""
 
-    Attributes
-    ----------
-    where : str
-        Its folder, or the distribution that it comes with.
-    wrong : str
-        The reason why the package cannot be used; empty if it can be used.
-    """
-
-    where: str
-    wrong: str = ""
+    where: str  # Its folder, or the distribution that it comes with.
+    wrong: str = ""  # The reason why the package cannot be used; empty if it can be used.
 
 
 class Origin(Protocol):
@@ -79,22 +71,15 @@ class Origin(Protocol):
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         """Read a definition; `None` if this origin does not have it.
 
-        Raises
-        ------
-        DefinitionError
-            If the origin has the definition, but cannot read it.
+        Raises `DefinitionError` if the origin has the definition, but cannot read it.
         """
 
 
 class EmbeddedOrigin:
     """The types that come with firm-hdl.
 
-    Parameters
-    ----------
-    distro : str
-        A key of `DISTROS`.
-    packages : collection of str or None
-        `None`: all packages.
+    * `distro`: a key of `DISTROS`.
+    * `packages`: `None` is all packages.
     """
 
     def __init__(self, distro: str, packages: Collection[str] | None = None) -> None:
@@ -136,25 +121,12 @@ class FolderOrigin:
     installed layout. An installation has each type in ROS's own language and in IDL; the file in
     ROS's language is read.
 
-    Parameters
-    ----------
-    path : str or path
-        It is scanned even if it has a file such as ``COLCON_IGNORE``.
-    is_prefix : bool
-        Whether the folder is an installation of ROS 2: packages are the folders in ``share/``, and
-        what the index of ament lists.
+    * `path`: it is scanned even if it has a file such as ``COLCON_IGNORE``.
+    * `is_prefix`: whether the folder is an installation of ROS 2: packages are the folders in
+      ``share/``, and what the index of ament lists.
 
-    Attributes
-    ----------
-    path : str
-    packages : mapping of str to PackagePlace
-    unreadable : list of str
-        Folders that this user may not read. They may have more packages or definitions.
-
-    Raises
-    ------
-    DefinitionError
-        If the path is not a folder, cannot be read or has too many folders. It has no span.
+    Raises `DefinitionError` if the path is not a folder, cannot be read or has too many folders. It
+    has no span.
     """
 
     def __init__(self, path: str | os.PathLike[str], *, is_prefix: bool = False) -> None:
@@ -163,6 +135,7 @@ class FolderOrigin:
             raise DefinitionError.of(f"'{root}' is not a folder")
         self.path = root
         scan = Scan(root)
+        # Folders that this user may not read. They may have more packages or definitions.
         self.unreadable = scan.unreadable
         self._folders: dict[str, list[PackageFolder]] = {}
         for folder in scan.prefix() if is_prefix else scan.packages():
@@ -223,24 +196,15 @@ class FolderOrigin:
 class Sources:
     """The definitions of several origins.
 
-    Parameters
-    ----------
-    origins : iterable of Origin
-        The first one that has a package hides the package in those after it.
-    implied : iterable of Origin
-        Origins after these, whose types are found but not listed.
-
-    Attributes
-    ----------
-    has_implied : bool
-        Whether there are such origins, as behind a recording.
-    implied_distro : str
-        The distribution that is one of them as a whole; empty if none is.
+    * `origins`: the first one that has a package hides the package in those after it.
+    * `implied`: origins after these, whose types are found but not listed.
     """
 
     def __init__(self, origins: Iterable[Origin], implied: Iterable[Origin] = ()) -> None:
         listed, more = tuple(origins), tuple(implied)
         self._origins, self._listed = listed + more, len(listed)
+        # The distribution that is one of them as a whole; empty if none is.
+        # Whether there are such origins, as behind a recording.
         self.has_implied, self.implied_distro = bool(more), distro_of(more)
 
     def _having(self, package: str) -> Iterator[Origin]:
@@ -337,15 +301,9 @@ class Sources:
     def find(self, package: str, kind: Kind, name: str) -> Definition | None:
         """Read a definition.
 
-        Returns
-        -------
-        Definition or None
-            `None` if no origin has one of that name.
+        Returns: `None` if no origin has one of that name.
 
-        Raises
-        ------
-        DefinitionError
-            If the definition exists but cannot be read.
+        Raises `DefinitionError` if the definition exists but cannot be read.
         """
         for origin in self._having(package):
             found = origin.find(package, kind, name)
@@ -356,11 +314,8 @@ class Sources:
     def include(self, path: str) -> Source | None:
         """Read a file that an IDL file includes.
 
-        Returns
-        -------
-        Source or None
-            `None` if the file does not exist. Empty if the file is one that ROS generates from a
-            definition in another language, because its types are found by name.
+        Returns: `None` if the file does not exist. Empty if the file is one that ROS generates from
+        a definition in another language, because its types are found by name.
         """
         for origin in self._having(path.partition("/")[0]):
             if isinstance(origin, FolderOrigin):

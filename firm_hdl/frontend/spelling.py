@@ -58,15 +58,10 @@ def package_of_file(path: str) -> tuple[str, str]:
     The package is the nearest folder above with a ``package.xml``, else the folder that has the
     file's folder ``msg``, ``srv`` or ``action``.
 
-    Returns
-    -------
-    tuple of str and str
-        The folder of the package, and the name of the type with its package and kind.
+    Returns: the folder of the package, and the name of the type with its package and kind.
 
-    Raises
-    ------
-    DefinitionError
-        If there is no such file, or the folders above it are not those of a package.
+    Raises `DefinitionError` if there is no such file, or the folders above it are not those of a
+    package.
     """
     if not os.path.isfile(path):
         _refuse_missing(path)

@@ -27,10 +27,7 @@ _NOT_EMBEDDED = frozenset(
 def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
     """Give the message for a type that is not defined.
 
-    Parameters
-    ----------
-    names : sequence of TypeName
-        All types that the user may mean, with one package and one name.
+    * `names`: all types that the user may mean, with one package and one name.
     """
     package, name = names[0].package, names[0].name
     place = sources.place(package)

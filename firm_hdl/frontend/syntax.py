@@ -44,34 +44,19 @@ class SizeSyntax:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TypeSyntax:
-    """The type of a field or a constant.
+    """The type of a field or a constant."""
 
-    Attributes
-    ----------
-    package : str or None
-        The package, if the text has one: the word before the slash.
-    name : str
-        Name of a builtin type or of a message type.
-    is_builtin : bool
-        Whether `name` is a builtin type of the dialect.
-    kind : "msg", "srv", "action" or None
-        The namespace of a message type, if the text has it (in IDL ``pkg::action::X_Goal``).
-        `None` means "msg", as everywhere in ``.msg``, ``.srv`` and ``.action`` files.
-    bound : SizeSyntax or None
-        The bound of a string: the number after ``string<=``.
-    array : "one", "array" or "sequence"
-        Whether brackets follow, and whether they fix the number of elements.
-    size : SizeSyntax or None
-        The number in the brackets: the length of an array, the bound of a sequence.
-    """
-
-    package: str | None = None
-    name: str
-    is_builtin: bool = True
-    bound: SizeSyntax | None = None
+    package: str | None = None  # The package, if the text has one: the word before the slash.
+    name: str  # Name of a builtin type or of a message type.
+    is_builtin: bool = True  # Whether `name` is a builtin type of the dialect.
+    bound: SizeSyntax | None = None  # The bound of a string: the number after `string<=`.
+    # Whether brackets follow, and whether they fix the number of elements.
     array: Literal["one", "array", "sequence"] = "one"
+    # The number in the brackets: the length of an array, the bound of a sequence.
     size: SizeSyntax | None = None
     span: Span
+    # The namespace of a message type, if the text has it (in IDL `pkg::action::X_Goal`). `None`
+    # means "msg", as everywhere in `.msg`, `.srv` and `.action` files.
     kind: Literal["msg", "srv", "action"] | None = None
 
 
@@ -119,25 +104,12 @@ MemberSyntax: TypeAlias = FieldSyntax | ConstantSyntax
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageSyntax:
-    """A whole ``.msg`` text, or the part of another that defines one message.
+    """A whole ``.msg`` text, or the part of another that defines one message."""
 
-    Attributes
-    ----------
-    source : Source
-        The whole file, to which all spans refer.
-    members : tuple of FieldSyntax or ConstantSyntax
-        In the order of the text.
-    comment : str
-        The comment at the head of the text.
-    text : str or None
-        The text of this message alone; `None` means all of the source.
-    language : "msg" or "idl"
-        Language of the names of builtin types: `char` is another type in IDL.
-    """
-
-    source: Source
+    source: Source  # The whole file, to which all spans refer.
     dialect: Dialect
-    members: tuple[MemberSyntax, ...]
-    comment: str = ""
-    text: str | None = None
+    members: tuple[MemberSyntax, ...]  # In the order of the text.
+    comment: str = ""  # The comment at the head of the text.
+    text: str | None = None  # The text of this message alone; `None` means all of the source.
+    # Language of the names of builtin types: `char` is another type in IDL.
     language: Literal["msg", "idl"] = "msg"

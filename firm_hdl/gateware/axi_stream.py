@@ -113,10 +113,7 @@ class AxiStreamSignature(wiring.Signature):
 class _Adapter(Component):
     """A stream of either kind, and the other one of the same packets.
 
-    Parameters
-    ----------
-    flow : In or Out
-        Of `packets`.
+    * `flow`: of `packets`.
     """
 
     axis: Any

@@ -30,49 +30,25 @@ __all__ = ["Collector"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OfferedLength:
-    """The length that a producer offers, decoded. Registers, valid from a cycle after the offer.
+    """The length that a producer offers, decoded. Registers, valid from a cycle after the offer."""
 
-    Attributes
-    ----------
-    known : Signal(1)
-        The fields belong to the length that is offered now. High until the transfer.
-    zero, over : Signal(1)
-        The length is 0, or above its limit.
-    skips : Signal(1)
-        The body is skipped: the length is 0, or all items are in the rest.
-    at_most_one_pass : Signal(1)
-        Of the body: one element, or one word.
-    rest : Signal(range(lanes + 1))
-        Number of items in the rest; always 0 for a loop.
-    """
-
-    known: Signal
+    known: Signal  # The fields belong to the length that is offered now. High until the transfer.
+    # The length is 0, or above its limit.
     zero: Signal
     over: Signal
-    skips: Signal
-    at_most_one_pass: Signal
-    rest: Signal
+    skips: Signal  # The body is skipped: the length is 0, or all items are in the rest.
+    at_most_one_pass: Signal  # Of the body: one element, or one word.
+    rest: Signal  # Number of items in the rest; always 0 for a loop.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Reader:
-    """A transfer that a state takes.
-
-    Attributes
-    ----------
-    transfer : Transfer
-    left : Signal(1)
-        The state has not taken the transfer.
-    lacks : Signal(1)
-        The state has not taken the transfer, and it is not offered.
-    go : Signal(1)
-        The transfer is taken in this cycle.
-    """
+    """A transfer that a state takes."""
 
     transfer: Transfer
-    left: Signal
-    lacks: Signal
-    go: Signal
+    left: Signal  # The state has not taken the transfer.
+    lacks: Signal  # The state has not taken the transfer, and it is not offered.
+    go: Signal  # The transfer is taken in this cycle.
 
 
 class Collector(wiring.Component):

@@ -40,24 +40,14 @@ class Counter:
     `last` is updated at once, the number one cycle later, so that no wide logic depends on a late
     signal. Call `load`, `preload` and `down` as often as needed, then `add_logic` once.
 
-    Parameters
-    ----------
-    most : int
-        The largest number that is loaded.
-    start : int or None
-        The number after a reset. If `None`, the counter has to be loaded before it counts.
-
-    Attributes
-    ----------
-    value, less : Value
-        The number of words or elements left is `value - less - pending`. `pending` is the count of
-        the cycle before, if it is still to be subtracted.
-    last : Signal
-        One word or element is left. A register.
+    * `most`: the largest number that is loaded.
+    * `start`: the number after a reset. If `None`, the counter has to be loaded before it counts.
     """
 
     def __init__(self, most: int, name: str, start: int | None = None):
         bits = max(3, most.bit_length())
+        # The number of words or elements left is `value - less - pending`. `pending` is the count
+        # of the cycle before, if it is still to be subtracted.
         self.value = Signal(
             bits,
             name=f"{name}_value",
@@ -66,6 +56,7 @@ class Counter:
             attrs={REMARK: "the number left is value - less - pending"},
         )
         self.less: Value = Const(0, 1)
+        # One word or element is left. A register.
         self.last = Signal(
             name=f"{name}_last", init=start in (None, 1), attrs={REMARK: "one is left"}
         )
@@ -95,15 +86,10 @@ class Counter:
 
         A constant that is loaded in the same cycle wins. At most one of the conditions is high.
 
-        Parameters
-        ----------
-        value, less : Value
-            The number is `value - less`. If `double` is given, both are valid one cycle after `on`,
-            `last` and `double`.
-        last : Value
-            The number is 1, if it is not 0.
-        double : Value or None
-            The number is 2, if it is more than 1.
+        * `value`, `less`: the number is `value - less`. If `double` is given, both are valid one
+          cycle after `on`, `last` and `double`.
+        * `last`: the number is 1, if it is not 0.
+        * `double`: the number is 2, if it is more than 1.
         """
         self._defaults.append(_Load(on, value, less, last, double))
         if isinstance(less, Value) and isinstance(self.less, Const):

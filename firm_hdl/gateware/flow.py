@@ -42,19 +42,10 @@ def exceeds(value: Value, limit: int) -> Value:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Exit:
-    """An exit of a state.
+    """An exit of a state."""
 
-    Attributes
-    ----------
-    taken : Value(1)
-        The state, once done, takes this exit.
-    state : int
-        Number of the state.
-    way : Transition
-    """
-
-    taken: Value
-    state: int
+    taken: Value  # The state, once done, takes this exit.
+    state: int  # Number of the state.
     way: Transition
 
 
@@ -75,26 +66,7 @@ class Flow(Generic[AnyState]):
 
     Declare constants by :meth:`register`, then add the transitions by :meth:`advance`, once.
 
-    Parameters
-    ----------
-    m : Module
-        Module to which the logic is added.
-    program : Program
-
-    Attributes
-    ----------
-    step : list of Value(1)
-        Whether the circuit is in a state, by number. The state is one-hot, so each is a register.
-    bits : Value(states)
-        All of `step`.
-    exits : list of Exit
-        All exits of all states; at most one of them is taken.
-    exit_ends : Value(1)
-        The exit that is taken ends the packet.
-    words : Counter
-        Counts the words of a run.
-    levels : list of Counter
-        Count the elements of loops, by level.
+    * `m`: module to which the logic is added.
     """
 
     def __init__(self, m: Module, program: Program[AnyState]):
@@ -117,16 +89,19 @@ class Flow(Generic[AnyState]):
             )
             for each in program.states
         ]
-        self.bits = Cat(self._steps)
+        self.bits = Cat(self._steps)  # All of `step`.
+        # Whether the circuit is in a state, by number. The state is one-hot, so each is a register.
         self.step: list[Value] = list(self._steps)
         init = {load.level: load.number for load in program.start.loads}
+        # Counts the words of a run.
         self.words = Counter(program.most_loaded(None), "words", init.get(None))
+        # Count the elements of loops, by level.
         self.levels = [
             Counter(program.most_loaded(level), f"level_{level}", init.get(level))
             for level in range(program.plan.levels)
         ]
-        self.exits = list(self._exits())
-        self.exit_ends: Value = Const(0, 1)
+        self.exits = list(self._exits())  # All exits of all states; at most one of them is taken.
+        self.exit_ends: Value = Const(0, 1)  # The exit that is taken ends the packet.
         if ending := [each.taken for each in self.exits if each.way.to is None]:
             self.exit_ends = named(m, "exit_ends", any_of(ending))
 
@@ -170,14 +145,9 @@ class Flow(Generic[AnyState]):
         cycle: no logic from the state's number comes before it. A constant that is the same in all
         states is no register.
 
-        Parameters
-        ----------
-        of : function
-            Returns the constant of a state; negative numbers are in two's complement.
-        written : bool
-            The caller writes the register, too.
-        remark : str
-            A comment on the register in the circuit's text.
+        * `of`: returns the constant of a state; negative numbers are in two's complement.
+        * `written`: the caller writes the register, too.
+        * `remark`: a comment on the register in the circuit's text.
         """
         values = [of(state) & ((1 << bits) - 1) for state in self.program.states]
         if written or any(value != values[0] for value in values[1:]):
@@ -195,10 +165,7 @@ class Flow(Generic[AnyState]):
     def rest_bytes(self, rest: Value) -> Value:
         """Return the size in bytes of the rest that the state takes, without the NUL.
 
-        Parameters
-        ----------
-        rest : Value
-            Number of items in the rest.
+        * `rest`: number of items in the rest.
         """
         units: dict[int, list[Value]] = {}
         for state in self.program.states:
@@ -223,23 +190,15 @@ class Flow(Generic[AnyState]):
     ) -> None:
         """Add the logic that goes to the next state, and loads and decrements the counters.
 
-        Parameters
-        ----------
-        moves : Value
-            The state is executed in this cycle.
-        ends : Value
-            The packet ends with the state: the next one is the first one of a packet.
-        aborts : Value or None
-            Else, it is the end of the packet.
-        done : Value
-            Else, the state is left through an exit if `done`, and into its body if not.
-        count : Value
-            The length of the current state. If `double` is given: of that of the cycle before.
-        single, double : Value
-            `single`: at most one pass of the body of the run or loop.
-            `double`: two passes; valid only if `single` is 0.
-        nul : bool
-            Whether the count of a string includes the NUL.
+        * `moves`: the state is executed in this cycle.
+        * `ends`: the packet ends with the state: the next one is the first one of a packet.
+        * `aborts`: else, it is the end of the packet.
+        * `done`: else, the state is left through an exit if `done`, and into its body if not.
+        * `count`: the length of the current state. If `double` is given: of that of the cycle
+          before.
+        * `single`, `double`: `single`: at most one pass of the body of the run or loop. `double`:
+          two passes; valid only if `single` is 0.
+        * `nul`: whether the count of a string includes the NUL.
         """
         m, program, self._is_complete = self.m, self.program, True
         to_exit, to_body = Signal(name="to_exit"), Signal(name="to_body")

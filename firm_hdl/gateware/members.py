@@ -20,19 +20,10 @@ STREAM_PORTS = ("payload", "valid", "ready")
 
 @dataclass(slots=True)
 class MemberTree:
-    """Members by ROS name, in wire order.
+    """Members by ROS name, in wire order."""
 
-    Attributes
-    ----------
-    member : str
-        Name in Python; empty at the root.
-    leaf : int or None
-        Index of the leaf, if this is one.
-    children : dict of str to MemberTree
-    """
-
-    member: str = ""
-    leaf: int | None = None
+    member: str = ""  # Name in Python; empty at the root.
+    leaf: int | None = None  # Index of the leaf, if this is one.
     children: dict[str, MemberTree] = field(default_factory=dict)
 
     def leaves(self, path: tuple[str, ...] = ()) -> Iterator[tuple[int, tuple[str, ...]]]:

@@ -18,25 +18,15 @@ class LutMemory:
     A word can be read from the cycle after its write on. The names of the ports' signals start with
     the name of the memory.
 
-    Parameters
-    ----------
-    m : Module
-    name : str
-        Name of the submodule.
-    shape : shape-like
-        Of one word.
-    depth : int
-        Number of words.
-
-    Attributes
-    ----------
-    write : WritePort
-        Synchronous: `addr`, `data` and `en`.
+    * `name`: name of the submodule.
+    * `shape`: of one word.
+    * `depth`: number of words.
     """
 
     def __init__(self, m: Module, name: str, shape: ShapeLike, depth: int):
         self._name, self._shape, self._bits = name, shape, ceil_log2(depth)
         m.submodules[name] = self._memory = Memory(shape=shape, depth=depth, init=[])
+        # Synchronous: `addr`, `data` and `en`.
         self.write = WritePort(
             WritePort.Signature(addr_width=self._bits, shape=shape),
             memory=self._memory,
@@ -64,34 +54,22 @@ class BlockMemory:
     Yosys so; else it would add logic for this case after each bit. Yosys takes it from a memory
     that is read asynchronously, with a register behind, and makes one block RAM of both.
 
-    Parameters
-    ----------
-    m : Module
-    shape : shape-like
-        Of one word.
-    depth : int
-        Number of words.
-
-    Attributes
-    ----------
-    write_at, read_at : Signal
-        Addresses.
-    write_word : Signal(shape)
-    writes, reads : Signal(1)
-        A word is written, or read, in this cycle.
-    word : Value
-        The word of the last read, one cycle later, as bits.
+    * `shape`: of one word.
+    * `depth`: number of words.
     """
 
     def __init__(self, m: Module, shape: ShapeLike, depth: int):
         bits, address = Shape.cast(shape).width, ceil_log2(depth)
+        # Addresses.
         self.write_at = Signal(address)
         self.read_at = Signal(address)
         self.write_word = Signal(shape)
+        # A word is written, or read, in this cycle.
         self.writes = Signal()
         self.reads = Signal()
         step = max(1, BLOCK_BITS // depth)
         parts = range(0, bits, step)
+        # The word of the last read, one cycle later, as bits.
         self.word: Value = Cat(
             self._part(m, number, low, min(bits, low + step), depth)
             for number, low in enumerate(parts)

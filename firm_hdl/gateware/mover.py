@@ -29,28 +29,14 @@ __all__ = ["Mover"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Writer:
-    """A transfer that a state may write.
-
-    Attributes
-    ----------
-    state : DeserializerState
-    transfer : Transfer
-    chosen : Signal(1)
-        The next order has the transfer.
-    active : Signal(1)
-        The order that is executed has the transfer, and it is not written yet.
-    blocked : Signal(1)
-        The transfer is active, and its register is not free.
-    go : Signal(1)
-        The transfer is written in this cycle.
-    """
+    """A transfer that a state may write."""
 
     state: DeserializerState
     transfer: Transfer
-    chosen: Signal
-    active: Signal
-    blocked: Signal
-    go: Signal
+    chosen: Signal  # The next order has the transfer.
+    active: Signal  # The order that is executed has the transfer, and it is not written yet.
+    blocked: Signal  # The transfer is active, and its register is not free.
+    go: Signal  # The transfer is written in this cycle.
 
 
 class Mover(wiring.Component):

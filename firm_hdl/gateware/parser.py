@@ -47,9 +47,7 @@ def parser_plan(
 ) -> Plan:
     """Return the plan of a parser with these parameters.
 
-    Raises
-    ------
-    TypeError, ValueError
+    Raises `TypeError` or `ValueError`.
     """
     layout = lay_out(message, wire)
     check_bus_bytes(bus_bytes)

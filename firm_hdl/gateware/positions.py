@@ -34,23 +34,14 @@ class Ring:
     A position is a number of `bits` bits, with the lane in the lowest ones and the lap bit in the
     highest one. It counts bytes and wraps around. The sign of the difference compares two positions
     that are less than `depth` words apart.
-
-    Parameters
-    ----------
-    plan : Plan
-
-    Attributes
-    ----------
-    depth : int
-        Words of the ring: a power of two. A step touches fewer words.
-    lane_bits, beat_bits, bits : int
-        Bits of the lane, of the slot with the lap bit, and of a whole position.
     """
 
     def __init__(self, plan: Plan):
         self.plan = plan
         self.bus = plan.bus_bytes
+        # Words of the ring: a power of two. A step touches fewer words.
         self.depth = ring_beats(self.bus)
+        # Bits of the lane, of the slot with the lap bit, and of a whole position.
         self.lane_bits = self.bus.bit_length() - 1
         self.beat_bits = self.depth.bit_length()
         self.bits = self.lane_bits + self.beat_bits
@@ -119,16 +110,10 @@ def align_up(
 
     All positions are modulo `2 ** len(value)`.
 
-    Parameters
-    ----------
-    name : str
-        Prefix of the names of signals: of the sum before the rounding, for example.
-    align : int
-        A power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
-    phase : Value or int
-        With a constant, the logic has one carry chain.
-    shift : int
-        Bytes to add after the rounding; a constant, so that it needs no addition of its own.
+    * `name`: prefix of the names of signals: of the sum before the rounding, for example.
+    * `align`: a power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
+    * `phase`: with a constant, the logic has one carry chain.
+    * `shift`: bytes to add after the rounding; a constant, so that it needs no addition of its own.
     """
     total = Signal(len(value), name=f"{name}_sum")
     if align == 1:
@@ -151,13 +136,9 @@ def align_up(
 def pick(cases: Iterable[tuple[Value, Value | int]], width: int) -> Value:
     """Select a value by signals of which at most one is high: an AND-OR without priority.
 
-    Parameters
-    ----------
-    cases : iterable of (Value, Value or int)
-        The signal, of one bit, and the value. Values shorter than `width` are extended with zeros;
-        longer ones are cut.
-    width : int
-        Bits of the result, which is 0 if no signal is high.
+    * `cases`: the signal, of one bit, and the value. Values shorter than `width` are extended with
+      zeros; longer ones are cut.
+    * `width`: bits of the result, which is 0 if no signal is high.
     """
     constants: list[list[Value]] = [[] for _ in range(width)]
     picked: list[Value] = []
@@ -191,16 +172,10 @@ def rotate(
     With `back`, the byte of lane 0 comes to that lane. There is one stage for each bit of `lane`
     that is not constant: fewer stages with wider multiplexers need more cells, and are not faster.
 
-    Parameters
-    ----------
-    value : Value
-        The bus word, 8 bits per lane.
-    lane : Value
-        Number of the lane; `log2(lanes of the bus word)` bits.
-    lanes : sequence of int
-        Possible values of `lane`; others are don't care.
-    name : str
-        Prefix of the stages' signals; the suffix is the bit of `lane` that selects.
+    * `value`: the bus word, 8 bits per lane.
+    * `lane`: number of the lane; `log2(lanes of the bus word)` bits.
+    * `lanes`: possible values of `lane`; others are don't care.
+    * `name`: prefix of the stages' signals; the suffix is the bit of `lane` that selects.
     """
     count = len(value) // 8
 

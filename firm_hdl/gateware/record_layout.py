@@ -63,21 +63,12 @@ def record_layout(
 class Record:
     """The layout of a record, and the place of each transfer in it.
 
-    Parameters
-    ----------
-    message, fields
-        As for :func:`record_layout`, errors included.
-    plan : Plan
-        The plan of the message.
-
-    Attributes
-    ----------
-    layout : StructLayout
-    transfers : dict of path to list of Transfer
-        The transfers of each leaf of the record, in order.
+    * `message`, `fields`: as for :func:`record_layout`, errors included.
+    * `plan`: the plan of the message.
     """
 
     def __init__(self, message: Message, plan: Plan, fields: Iterable[str] | None):
+        # The transfers of each leaf of the record, in order.
         self.transfers: dict[Path, list[Transfer]] = {}
         self._message = message
         self._leaves = {leaf.path: leaf for leaf in plan.leaves}

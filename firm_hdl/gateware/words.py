@@ -82,12 +82,8 @@ def write_bytes(
 
     The state alone selects the bytes, so no data path depends on `valid` of a leaf.
 
-    Parameters
-    ----------
-    served : sequence of Value(1)
-        By number of a transfer in its state: it was taken in an earlier cycle.
-    words : View(words_layout(plan))
-        `items` and `map` are written.
+    * `served`: by number of a transfer in its state: it was taken in an earlier cycle.
+    * `words`: `items` and `map` are written.
     """
     payloads = {k: _wire_bits(m, program, k, each.payload) for k, each in leaves.items()}
     for name in ("items", "map"):

@@ -39,25 +39,16 @@ _LENGTH = re.compile(r"\[(0\d{1,18})\]\s*\Z")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Field:
-    """One member of a message.
-
-    Attributes
-    ----------
-    default : Value or None
-        ROS 2 only; never on the wire.
-    comment : str
-        The comments above the field and in its line, without the `#`, joined by newlines.
-    unit : str or None
-        A comment's ``[unit]``, as rosidl reads it.
-    span : Span or None
-        The field's name in the text. Not compared.
-    """
+    """One member of a message."""
 
     name: str
     type: FieldType
-    default: Value | None = None
+    default: Value | None = None  # ROS 2 only; never on the wire.
+    # The comments above the field and in its line, without the `#`, joined by newlines.
     comment: str = field(default="", compare=False)
+    # A comment's `[unit]`, as rosidl reads it.
     unit: str | None = field(default=None, compare=False)
+    # The field's name in the text. Not compared.
     span: Span | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -99,29 +90,17 @@ class Constant:
 # No slots: cached attributes live in the instance's dictionary.
 @dataclass(frozen=True, kw_only=True)
 class Message:
-    """A message type.
+    """A message type."""
 
-    Attributes
-    ----------
-    name : str
-        Full name: ``sensor_msgs/msg/Imu`` in ROS 2, ``sensor_msgs/Imu`` in ROS 1; plain ``time``
-        and ``duration`` for the built-in types of ROS 1.
-    dialect : "ros1" or "ros2"
-    fields : tuple of Field
-        In wire order. Empty for an empty message, whose bytes depend on the wire format.
-    constants : tuple of Constant
-    comment : str
-        The comment at the head of the file.
-    text : str
-        The definition as it was read.
-    """
-
+    # Full name: `sensor_msgs/msg/Imu` in ROS 2, `sensor_msgs/Imu` in ROS 1; plain `time` and
+    # `duration` for the built-in types of ROS 1.
     name: str
     dialect: Dialect
+    # In wire order. Empty for an empty message, whose bytes depend on the wire format.
     fields: tuple[Field, ...]
     constants: tuple[Constant, ...] = ()
-    comment: str = field(default="", compare=False)
-    text: str = field(default="", compare=False, repr=False)
+    comment: str = field(default="", compare=False)  # The comment at the head of the file.
+    text: str = field(default="", compare=False, repr=False)  # The definition as it was read.
 
     def __hash__(self) -> int:
         # Equal messages have equal names; hashing the tree at every level would be quadratic.
@@ -217,11 +196,8 @@ def closure(roots: Iterable[Message], *, parts_first: bool = True) -> list[Messa
     The stack is explicit, because definitions may nest deeper than Python's recursion limit.
     Messages of the same name count as the same type, as in one library.
 
-    Parameters
-    ----------
-    parts_first : bool
-        False lists each message when it is first met: a message before those in its fields, depth
-        first, in the order of the fields.
+    * `parts_first`: if not, list each message when it is first met: a message before those in its
+      fields, depth first, in the order of the fields.
     """
     met: dict[str, Message] = {}
     done: list[Message] = []
@@ -245,10 +221,7 @@ def closure(roots: Iterable[Message], *, parts_first: bool = True) -> list[Messa
 def map_messages(message: Message, change: Callable[[Message], Message]) -> Message:
     """Return a message type with every message in it changed: each once, nested messages first.
 
-    Parameters
-    ----------
-    change : callable
-        Returns the changed message. Messages in its argument have been changed already.
+    * `change`: returns the changed message. Messages in its argument have been changed already.
     """
     made: dict[str, Message] = {}
 
@@ -303,36 +276,22 @@ class Service:
 
 @dataclass(frozen=True, kw_only=True)
 class Action:
-    """An action type.
+    """An action type."""
 
-    Attributes
-    ----------
-    name : str
-        Full name: ``tf2_msgs/action/LookupTransform`` in ROS 2, ``tf2_msgs/LookupTransform`` in
-        ROS 1.
-    dialect : "ros1" or "ros2"
-    goal, result, feedback : Message
-        What the definition declares.
-    services : tuple of Service
-        In ROS 2 ``<name>_SendGoal`` and ``<name>_GetResult``; none in ROS 1.
-    wrappers : tuple of Message
-        In ROS 2 ``<name>_FeedbackMessage``; in ROS 1 ``<name>ActionGoal``, ``<name>ActionResult``,
-        ``<name>ActionFeedback`` and ``<name>Action``.
-    comment : str
-        The comment at the head of the file.
-    text : str
-        The definition as it was read.
-    """
-
+    # Full name: `tf2_msgs/action/LookupTransform` in ROS 2, `tf2_msgs/LookupTransform` in ROS 1.
     name: str
     dialect: Dialect
+    # What the definition declares.
     goal: Message
     result: Message
     feedback: Message
+    # In ROS 2 `<name>_SendGoal` and `<name>_GetResult`; none in ROS 1.
     services: tuple[Service, ...] = ()
+    # In ROS 2 `<name>_FeedbackMessage`; in ROS 1 `<name>ActionGoal`, `<name>ActionResult`,
+    # `<name>ActionFeedback` and `<name>Action`.
     wrappers: tuple[Message, ...] = ()
-    comment: str = field(default="", compare=False)
-    text: str = field(default="", compare=False, repr=False)
+    comment: str = field(default="", compare=False)  # The comment at the head of the file.
+    text: str = field(default="", compare=False, repr=False)  # The definition as it was read.
 
     def __str__(self) -> str:
         return self.name

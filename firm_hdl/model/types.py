@@ -42,26 +42,17 @@ Value: TypeAlias = "bool | int | float | str | bytes | tuple[Value, ...]"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Primitive:
-    """A number of fixed size.
+    """A number of fixed size."""
 
-    Attributes
-    ----------
-    name : str
-        As ROS writes it: ``bool``, ``byte``, ``char``, ``int8`` ... ``uint64``, ``float32``,
-        ``float64``; from IDL also ``wchar`` and ``long double``.
-    bytes : int
-        Size on every wire, in bytes: 1, 2, 4 or 8. The size of `wchar` depends on the distribution.
-        The 16 bytes of `long double` are those of the standard; see `has_wire_format`.
-    signed : bool
-        Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
-    kind : "bool", "int" or "float"
-        How to interpret the bits.
-    """
-
+    # As ROS writes it: `bool`, `byte`, `char`, `int8` ... `uint64`, `float32`, `float64`; from IDL
+    # also `wchar` and `long double`.
     name: str
+    # Size on every wire, in bytes: 1, 2, 4 or 8. The size of `wchar` depends on the distribution.
+    # The 16 bytes of `long double` are those of the standard; see `has_wire_format`.
     bytes: int
+    # Whether an integer is two's complement. `byte` is signed in ROS 1 only, `char` in IDL only.
     signed: bool
-    kind: Literal["bool", "int", "float"]
+    kind: Literal["bool", "int", "float"]  # How to interpret the bits.
 
     def __str__(self) -> str:
         return self.name
@@ -107,10 +98,7 @@ PRIMITIVES: dict[Dialect, dict[str, Primitive]] = {
 def idl_primitives(wchar_bytes: int) -> dict[str, Primitive]:
     """List every primitive that a definition in OMG IDL can name.
 
-    Parameters
-    ----------
-    wchar_bytes : 2 or 4
-        Size of a `wchar` on the wire, which changed from one distribution to the next.
+    * `wchar_bytes`: size of a `wchar` on the wire, which changed from one distribution to the next.
     """
     return PRIMITIVES["ros2"] | {
         # A C `signed char`, unlike the `char` of .msg files.
@@ -135,18 +123,11 @@ PRIMITIVE_OF: dict[tuple[str, bool], Primitive] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class String:
-    """A string.
+    """A string."""
 
-    Attributes
-    ----------
-    bound : int or None
-        Largest number of characters (bytes for `string`, UTF-16 units for `wstring`).
-    wide : bool
-        True for `wstring`.
-    """
-
+    # Largest number of characters (bytes for `string`, UTF-16 units for `wstring`).
     bound: int | None = None
-    wide: bool = False
+    wide: bool = False  # True for `wstring`.
 
     def __str__(self) -> str:
         return ("wstring" if self.wide else "string") + (

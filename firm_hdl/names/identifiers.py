@@ -28,10 +28,7 @@ _Key = TypeVar("_Key")
 def plain(name: str, initial: str) -> str:
     """Make a name a basic identifier of VHDL (IEEE Std 1076-2008, 15.4) or a keyword.
 
-    Parameters
-    ----------
-    initial : str
-        Letter to put first if the name does not start with a letter.
+    * `initial`: letter to put first if the name does not start with a letter.
     """
     text = _NOT_ALLOWED.sub("_", name).strip("_")
     return text if text[:1].isalpha() else f"{initial}{text}"
@@ -44,15 +41,8 @@ def first_free(
 ) -> str:
     """Return the wanted name, with a number if the name is taken; case is ignored.
 
-    Parameters
-    ----------
-    taken : collection of str
-        Names in lower case.
-    derived : callable
-        Returns all identifiers that are derived from the name. They have to be free, too.
-
-    >>> first_free("Vector", {"vector", "vector_2"})
-    'Vector_3'
+    * `taken`: names in lower case.
+    * `derived`: returns all identifiers that are derived from the name. They have to be free, too.
     """
     text, number = wanted, 2
     while any(name.lower() in taken for name in derived(text)):
@@ -69,17 +59,10 @@ def identifier(name: str) -> str:
 def scope_names(names: Iterable[str], reserved: Collection[str] = ()) -> dict[str, str]:
     """Return the identifiers for the names of one scope, such as the fields of a record.
 
-    Parameters
-    ----------
-    names : iterable of str
-        They must be distinct.
-    reserved : collection of str
-        Identifiers that are taken, ignoring case.
+    * `names`: they must be distinct.
+    * `reserved`: identifiers that are taken, ignoring case.
 
-    Returns
-    -------
-    dict of str to str
-        By name, in the order of `names`. The result depends on the arguments only.
+    The result is by name, in the order of `names`. It depends on the arguments only.
     """
     return _assign({name: name for name in names}, reserved)
 
@@ -89,12 +72,8 @@ def flat_names(
 ) -> dict[tuple[str, ...], str]:
     """Return the identifiers for paths: their parts, joined by one underscore.
 
-    Parameters
-    ----------
-    paths : iterable of tuple of str
-        They must be distinct.
-    reserved : collection of str
-        As for :func:`scope_names`.
+    * `paths`: they must be distinct.
+    * `reserved`: as for :func:`scope_names`.
     """
     return _assign({path: "_".join(path) for path in paths}, reserved)
 

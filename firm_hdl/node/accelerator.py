@@ -71,11 +71,9 @@ def load_accelerator(description: Description) -> Any:
 
     The module is searched in the folder of the description first, then where Python searches.
 
-    Raises
-    ------
-    DefinitionError
-        At the name in the description, if there is no such module or class, or it cannot be made,
-        or its ports do not match. A :class:`UserError` of the class gives its own text as reason.
+    Raises `DefinitionError`: at the name in the description, if there is no such module or class,
+    or it cannot be made, or its ports do not match. A :class:`UserError` of the class gives its own
+    text as reason.
     """
     if description.hdl is not None:
         from firm_hdl.node.hdl import HdlAccelerator
@@ -113,10 +111,7 @@ def load_accelerator(description: Description) -> Any:
 def check_accelerator(description: Description, accelerator: Any) -> None:
     """Check that the ports of an accelerator are those of a description.
 
-    Raises
-    ------
-    UserError
-        If a member is missing, or has another shape or direction.
+    Raises `UserError` if a member is missing, or has another shape or direction.
     """
     signature = getattr(accelerator, "signature", None)
     if not isinstance(signature, wiring.Signature):
@@ -147,11 +142,8 @@ def check_accelerator(description: Description, accelerator: Any) -> None:
 def elaborate_accelerator(description: Description, accelerator: Any, platform: object) -> Fragment:
     """Elaborate an accelerator, with all that is inside it.
 
-    Raises
-    ------
-    DefinitionError
-        At the name in the description: if the code of the accelerator raises an exception, if it
-        connects a stream twice, or if it uses a clock domain that it does not have.
+    Raises `DefinitionError`: at the name in the description: if the code of the accelerator raises
+    an exception, if it connects a stream twice, or if it uses a clock domain that it does not have.
     """
     own = f"'{description.accelerator}'"
     with _reported(description, own) if description.accelerator else nullcontext():
@@ -178,10 +170,7 @@ def conflicts_reported(description: Description) -> Iterator[None]:
 
     Amaranth finds them in the whole design, and says where both are.
 
-    Raises
-    ------
-    DefinitionError
-        At the name of the accelerator in the description.
+    Raises `DefinitionError`: at the name of the accelerator in the description.
     """
     try:
         yield
@@ -220,10 +209,8 @@ def _searched_first(folder: str) -> Iterator[None]:
 def _reported(description: Description, name: str) -> Iterator[None]:
     """Report whatever the user's code raises, with its place.
 
-    Raises
-    ------
-    DefinitionError
-        At the name in the description. A :class:`UserError` gives its own text.
+    Raises `DefinitionError`: at the name in the description. A :class:`UserError` gives its own
+    text.
     """
     try:
         yield

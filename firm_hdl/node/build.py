@@ -91,25 +91,16 @@ def build_node(
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
-    Parameters
-    ----------
-    out : path
-        Created if it does not exist.
-    force : bool
-        Write the folder even if it is current.
-    stimuli : callable or None
-        Returns good packets of a type for the test benches. `None`: these send control messages
-        only.
-    datasheet : bool
-        Write the datasheet, too. It has the figures of bitstreams that are in the folder.
-    ip : Tool or None
-        Write an IP for this tool, too; of a node whose link is AXI4-Stream.
+    * `out`: created if it does not exist.
+    * `force`: write the folder even if it is current.
+    * `stimuli`: returns good packets of a type for the test benches. `None`: these send control
+      messages only.
+    * `datasheet`: write the datasheet, too. It has the figures of bitstreams that are in the
+      folder.
+    * `ip`: write an IP for this tool, too; of a node whose link is AXI4-Stream.
 
-    Raises
-    ------
-    DefinitionError, UserError
-        If the accelerator cannot be used, the node is too large, two design units would have one
-        name, or the folder cannot be written.
+    Raises `DefinitionError` or `UserError` if the accelerator cannot be used, the node is too
+    large, two design units would have one name, or the folder cannot be written.
     """
     kind = description.link.kind
     # AXI DMA is AMD's.
@@ -274,14 +265,9 @@ def _host_files(description: Description, name: str) -> dict[str, str]:
 def placed_on(folder: Path, design: str, accelerator: Mapping[str, str]) -> dict[str, Any]:
     """Return figures of the bitstreams of a circuit, by the name of the board.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder of the node.
-    design : str
-        SHA-256 of the circuit.
-    accelerator : mapping of str to str
-        SHA-256 of the files of its accelerator.
+    * `folder`: the folder of the node.
+    * `design`: SHA-256 of the circuit.
+    * `accelerator`: SHA-256 of the files of its accelerator.
     """
     found = {place.name: read_manifest(place) or {} for place in folder.glob("boards/*")}
     of = {"design_sha256": design, "accelerator_files": accelerator}
@@ -360,18 +346,10 @@ def check_units(
 ) -> None:
     """Refuse a name of a node if two design units would have one name; see `shared_unit`.
 
-    Parameters
-    ----------
-    name : str
-        Name that the outermost entity is to have.
-    top : str
-        Name that this entity has in VHDL.
-    files : mapping of str to iterable of str
+    * `name`: name that the outermost entity is to have.
+    * `top`: name that this entity has in VHDL.
 
-    Raises
-    ------
-    DefinitionError
-        At the name of the node in the description, or at the accelerator.
+    Raises `DefinitionError`: at the name of the node in the description, or at the accelerator.
     """
     if top != name:
         raise _refused(description, f"the VHDL of every node uses the name '{name}' itself")

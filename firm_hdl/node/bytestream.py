@@ -35,34 +35,18 @@ def write_frame(frame: bytes) -> bytes:
 
 @dataclass(slots=True)
 class ByteStreamCounters:
-    """What a reader found between the bytes 0.
+    """What a reader found between the bytes 0."""
 
-    Attributes
-    ----------
-    passed : int
-        Frames whose CRC is right.
-    damaged : int
-        Others: a block that is too long, a CRC that is wrong, too few bytes for a CRC.
-    large : int
-        Others that have more bytes than the limit.
-    """
-
-    passed: int = 0
+    passed: int = 0  # Frames whose CRC is right.
+    # Others: a block that is too long, a CRC that is wrong, too few bytes for a CRC.
     damaged: int = 0
-    large: int = 0
+    large: int = 0  # Others that have more bytes than the limit.
 
 
 class ByteStreamReader:
     """Read frames from a stream of bytes.
 
-    Parameters
-    ----------
-    max_bytes : int
-        Largest frame. Of a larger one, nothing is kept.
-
-    Attributes
-    ----------
-    counters : ByteStreamCounters
+    * `max_bytes`: largest frame. Of a larger one, nothing is kept.
     """
 
     def __init__(self, *, max_bytes: int = 1 << 20) -> None:

@@ -114,21 +114,12 @@ class ControlRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlResponse:
-    """A response.
+    """A response."""
 
-    Attributes
-    ----------
-    operation : int
-        That of the request.
-    result : Result
-    value : int
-    seconds, nanoseconds : int
-        Time of the node.
-    """
-
-    operation: int
+    operation: int  # That of the request.
     result: Result
     value: int
+    # Time of the node.
     seconds: int
     nanoseconds: int
 
@@ -154,25 +145,13 @@ class ControlResponse:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Register:
-    """A register that a host can read: 32 bits.
-
-    Attributes
-    ----------
-    number : int
-    owner : str
-        ``node``, ``link``, or the complete name of a topic.
-    part : "identity", "link", "node", "in" or "out"
-    name : str
-        A counter of two registers has ``_low`` and ``_high`` at the end of their names.
-    topic : int
-        Id of the topic; 0 for others.
-    """
+    """A register that a host can read: 32 bits."""
 
     number: int
-    owner: str
+    owner: str  # `node`, `link`, or the complete name of a topic.
     part: Literal["identity", "link", "node", "in", "out"]
-    name: str
-    topic: int = 0
+    name: str  # A counter of two registers has `_low` and `_high` at the end of their names.
+    topic: int = 0  # Id of the topic; 0 for others.
 
 
 IDENTITY = ("version", "fingerprint_low", "fingerprint_high", "topics", "clock_hz", "rate")

@@ -45,14 +45,9 @@ def node_datasheet(
 ) -> str:
     """Write the datasheet of a node.
 
-    Parameters
-    ----------
-    name, module : str
-        The outermost entity and module.
-    vhdl_ports : mapping of str to str
-        Names of ports in VHDL, where they differ.
-    placed : mapping
-        What the manifests of bitstreams say of them, by the name of the board.
+    * `name`, `module`: the outermost entity and module.
+    * `vhdl_ports`: names of ports in VHDL, where they differ.
+    * `placed`: what the manifests of bitstreams say of them, by the name of the board.
     """
     facts = facts_of(description)
     stores = list(_stores(facts))

@@ -254,41 +254,22 @@ class Link:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hdl:
-    """An accelerator in another language than Amaranth.
-
-    Attributes
-    ----------
-    language : "vhdl", "verilog" or "systemverilog"
-    files : tuple of str
-        Files in compile order, relative to the folder of the description.
-    entity : str
-        Name of the entity or module.
-    has_records : bool
-        Messages are ports of records or structs, rather than of plain vectors.
-    """
+    """An accelerator in another language than Amaranth."""
 
     language: Language
-    files: tuple[str, ...]
-    entity: str
+    files: tuple[str, ...]  # Files in compile order, relative to the folder of the description.
+    entity: str  # Name of the entity or module.
+    # Messages are ports of records or structs, rather than of plain vectors.
     has_records: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IoPins:
-    """The pins of a board for a member of an accelerator that comes out of the node as `io`.
+    """The pins of a board for a member of an accelerator that comes out of the node as `io`."""
 
-    Attributes
-    ----------
-    name : str
-        The path of the member, such as ``pwm``, or ``encoder.a``.
-    pins : tuple of str
-        One pin for each bit, the lowest first, as ``led.0`` or as ``B2``.
-    span, spans : Span and tuple of Span
-        The name and the pins in the description.
-    """
-
-    name: str
-    pins: tuple[str, ...]
+    name: str  # The path of the member, such as `pwm`, or `encoder.a`.
+    pins: tuple[str, ...]  # One pin for each bit, the lowest first, as `led.0` or as `B2`.
+    # The name and the pins in the description.
     span: Span = field(compare=False, repr=False)
     spans: tuple[Span, ...] = field(compare=False, repr=False)
 

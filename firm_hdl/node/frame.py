@@ -27,20 +27,11 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeaderField:
-    """A field of the header.
-
-    Attributes
-    ----------
-    name : str
-    bytes : int
-        Size; the fields follow each other without gaps.
-    meaning : str
-        Description for people, in Markdown.
-    """
+    """A field of the header."""
 
     name: str
-    bytes: int
-    meaning: str
+    bytes: int  # Size; the fields follow each other without gaps.
+    meaning: str  # Description for people, in Markdown.
 
 
 VERSION = 0xF1
@@ -104,13 +95,7 @@ class FrameError(ValueError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Header:
-    """A header. Its attributes are the fields of `HEADER`, with the flags one by one.
-
-    Attributes
-    ----------
-    topic, tag, sequence, fragment, length : int
-    last, start : bool
-    """
+    """A header. Its attributes are the fields of `HEADER`, with the flags one by one."""
 
     topic: int
     length: int
@@ -124,10 +109,7 @@ class Header:
 def encode_header(header: Header) -> bytes:
     """Write a header.
 
-    Raises
-    ------
-    ValueError
-        If a number does not fit into its field.
+    Raises `ValueError` if a number does not fit into its field.
     """
     flags = FLAG_LAST * header.last | FLAG_START * header.start
     parts = []
@@ -144,10 +126,7 @@ def encode_header(header: Header) -> bytes:
 def decode_header(frame: bytes) -> Header:
     """Read the header of a frame.
 
-    Raises
-    ------
-    FrameError
-        If the frame is too short, or of another version.
+    Raises `FrameError` if the frame is too short, or of another version.
     """
     if len(frame) < HEADER_BYTES:
         raise FrameError(f"a frame has {HEADER_BYTES} bytes at least, not {len(frame)}")

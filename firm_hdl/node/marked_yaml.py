@@ -45,17 +45,11 @@ _TOO_DEEP = "nested too deep"
 
 
 class Marked:
-    """A text, and the problems that were found in it.
-
-    Attributes
-    ----------
-    source : Source
-    noted : int
-        How many problems were noted. What several topics share by an alias counts for each.
-    """
+    """A text, and the problems that were found in it."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
+        # How many problems were noted. What several topics share by an alias counts for each.
         self.noted = 0
         self._problems: dict[Diagnostic, None] = {}
 
@@ -79,10 +73,7 @@ class Marked:
     def note(self, problem: Diagnostic) -> None:
         """Note a problem of this text, or of a definition that it names.
 
-        Raises
-        ------
-        DefinitionError
-            With all problems, if there are too many.
+        Raises `DefinitionError`: with all problems, if there are too many.
         """
         self._problems[problem] = None
         self.noted += 1
@@ -106,10 +97,7 @@ class Marked:
     def mapping(self, node: yaml.Node, what: str, example: str = "") -> dict[str, Entry]:
         """Read a mapping whose keys are texts; a key that occurs twice is a problem.
 
-        Parameters
-        ----------
-        example : str
-            What such a mapping looks like, for the message.
+        * `example`: what such a mapping looks like, for the message.
         """
         if not isinstance(node, yaml.MappingNode):
             such = f", such as {example}" if example else ""
@@ -180,10 +168,7 @@ class Entry:
     def words(self) -> list[tuple[str, Span]]:
         """Read words, in a list or with blanks between them; a number is a word as it is written.
 
-        Returns
-        -------
-        list of pairs
-            Each word with its place.
+        Returns: each word with its place.
         """
         is_list = isinstance(self.value, yaml.SequenceNode)
         found: list[tuple[str, Span]] = []
@@ -316,10 +301,7 @@ class _Loader(yaml.SafeLoader):
 def parse(source: Source) -> tuple[Marked, yaml.Node]:
     """Parse a text.
 
-    Raises
-    ------
-    DefinitionError
-        If the text is not YAML, is nested too deep, or is empty.
+    Raises `DefinitionError` if the text is not YAML, is nested too deep, or is empty.
     """
     marked = Marked(source)
     try:

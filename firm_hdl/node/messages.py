@@ -25,21 +25,11 @@ _SEQUENCES = 1 << 16
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodeMessage:
-    """A packet on its way between host and node.
+    """A packet on its way between host and node."""
 
-    Attributes
-    ----------
-    topic : int
-        Id of the topic.
-    packet : bytes
-        The serialized message.
-    tag : int
-        Of a request or a response; else 0.
-    """
-
-    topic: int
-    packet: bytes
-    tag: int = 0
+    topic: int  # Id of the topic.
+    packet: bytes  # The serialized message.
+    tag: int = 0  # Of a request or a response; else 0.
 
 
 def distance(sequence: int, expected: int) -> int:
@@ -54,14 +44,10 @@ def distance(sequence: int, expected: int) -> int:
 class MessageSender:
     """Write messages as frames.
 
-    Parameters
-    ----------
-    frame_bytes : int or None
-        Most bytes of a frame, header included: 16 and a multiple of 16. `None`: no limit.
-    sequence : int
-        Number of the first message.
-    starts : bool
-        Whether the first message says that the sequence begins.
+    * `frame_bytes`: most bytes of a frame, header included: 16 and a multiple of 16. `None`: no
+      limit.
+    * `sequence`: number of the first message.
+    * `starts`: whether the first message says that the sequence begins.
     """
 
     def __init__(
@@ -80,10 +66,7 @@ class MessageSender:
     def frames(self, message: NodeMessage) -> list[bytes]:
         """Return the frames of the next message, in order.
 
-        Raises
-        ------
-        ValueError
-            If the message needs more than 65,536 frames, or a number does not fit.
+        Raises `ValueError` if the message needs more than 65,536 frames, or a number does not fit.
         """
         packet = message.packet
         room = self._room or max(1, len(packet))
@@ -109,35 +92,21 @@ class MessageSender:
 
 @dataclass(slots=True)
 class FrameCounters:
-    """What a receiver did with frames and messages.
+    """What a receiver did with frames and messages."""
 
-    Attributes
-    ----------
-    passed : int
-        Messages that arrived whole.
-    lost : int
-        Messages that did not, by the gaps between the numbers of those that did. All others below
-        say why; none of them is a further loss.
-    late : int
-        Messages that were dropped because a later one had passed, or the same one before, or
-        because their number is far from what is expected.
-    cut : int
-        Messages that were dropped because a fragment was missing, or their length was wrong.
-    stray : int
-        Frames that were dropped because they belong to no message that is under way.
-    malformed : int
-        Frames that were dropped because their header was missing or of another version.
-    large : int
-        Messages that were dropped because they are larger than the limit.
-    """
-
-    passed: int = 0
+    passed: int = 0  # Messages that arrived whole.
+    # Messages that did not, by the gaps between the numbers of those that did. All others below say
+    # why; none of them is a further loss.
     lost: int = 0
+    # Messages that were dropped because a later one had passed, or the same one before, or because
+    # their number is far from what is expected.
     late: int = 0
+    # Messages that were dropped because a fragment was missing, or their length was wrong.
     cut: int = 0
-    stray: int = 0
+    stray: int = 0  # Frames that were dropped because they belong to no message that is under way.
+    # Frames that were dropped because their header was missing or of another version.
     malformed: int = 0
-    large: int = 0
+    large: int = 0  # Messages that were dropped because they are larger than the limit.
 
     def add(self, other: FrameCounters) -> None:
         """Add what another receiver did."""
@@ -182,25 +151,11 @@ class _Assembly:
 class MessageReceiver:
     """Read frames, and put messages together.
 
-    Parameters
-    ----------
-    max_bytes : int
-        Largest message.
-    max_open : int
-        Most messages that are under way at once; then the oldest one is cut. A sender sends one
-        after the other, so more than one only happens if the network changes the order.
-    most_late : int
-        How many numbers before the expected one are late. What is further back may be a sender that
-        has started again.
-
-    Attributes
-    ----------
-    counters : FrameCounters
-    expected : int or None
-        Number of the next message, once one has come.
-    jumped : int
-        What the last number that was more than 64 ahead has added to `counters.lost`. It is no
-        loss if the sender had started again. Who knows that it had not sets this to 0.
+    * `max_bytes`: largest message.
+    * `max_open`: most messages that are under way at once; then the oldest one is cut. A sender
+      sends one after the other, so more than one only happens if the network changes the order.
+    * `most_late`: how many numbers before the expected one are late. What is further back may be a
+      sender that has started again.
     """
 
     def __init__(
@@ -212,9 +167,11 @@ class MessageReceiver:
     ) -> None:
         self._max_bytes, self._max_open, self._most_late = max_bytes, max_open, most_late
         self._open: dict[int, _Assembly] = {}
-        self.expected: int | None = None
+        self.expected: int | None = None  # Number of the next message, once one has come.
         # The number that would confirm a message whose number was far from the expected one.
         self._confirms: int | None = None
+        # What the last number that was more than 64 ahead has added to `counters.lost`. It is no
+        # loss if the sender had started again. Who knows that it had not sets this to 0.
         self.jumped = 0
         self.counters = FrameCounters()
 

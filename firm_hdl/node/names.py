@@ -29,10 +29,7 @@ _NOT_ALLOWED = re.compile(r"[^A-Za-z0-9_]")
 def node_problem(name: str, dialect: Dialect) -> str:
     """Say why a name is none of a node; empty if it is one.
 
-    Parameters
-    ----------
-    name : str
-        Name without a namespace.
+    * `name`: name without a namespace.
     """
     if not name:
         return "the name of a node must not be empty"

@@ -467,12 +467,8 @@ def port_of(
 ) -> str:
     """Name the member of a topic: as the description says, or after the complete name.
 
-    Parameters
-    ----------
-    entry : Entry or None
-        The value of ``port``.
-    taken : dict
-        The topic of each port in lower case, by kind and port; this one is added.
+    * `entry`: the value of ``port``.
+    * `taken`: the topic of each port in lower case, by kind and port; this one is added.
     """
     place = topic.error_at_key if entry is None else entry.error
     # A port is part of names in VHDL, which has neither '__' nor an underscore at either end.
@@ -493,13 +489,8 @@ def port_of(
 class TopicReader:
     """Read the options of topics.
 
-    Parameters
-    ----------
-    library : Library
-        The definitions of all types.
-    bus_bytes : int
-    link : Link
-        It decides whether a subscription may hold what comes.
+    * `library`: the definitions of all types.
+    * `link`: it decides whether a subscription may hold what comes.
     """
 
     def __init__(self, marked: Marked, library: Library, bus_bytes: int, link: Link) -> None:

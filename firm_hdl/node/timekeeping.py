@@ -37,16 +37,8 @@ class ClockKeeper:
     Send any request about once a second, and give each response to :meth:`sample`. If that returns
     a request, send it, and do not sample its response.
 
-    Parameters
-    ----------
-    nominal : int
-        The rate of the node's clock without a correction: register `rate` after a reset, or
-        :func:`firm_hdl.node.control.nominal_rate`.
-
-    Attributes
-    ----------
-    offset_ns : float or None
-        Time of the node less that of the host, at the last sample that counted.
+    * `nominal`: the rate of the node's clock without a correction: register `rate` after a reset,
+      or :func:`firm_hdl.node.control.nominal_rate`.
     """
 
     def __init__(self, nominal: int) -> None:
@@ -55,6 +47,7 @@ class ClockKeeper:
         self._last_ns: int | None = None
         # The error of the node's crystal that is corrected, as a fraction.
         self._drift = 0.0
+        # Time of the node less that of the host, at the last sample that counted.
         self.offset_ns: float | None = None
 
     def sample(
@@ -62,17 +55,12 @@ class ClockKeeper:
     ) -> ControlRequest | None:
         """Take a response; return what to send to the node.
 
-        Parameters
-        ----------
-        sent_ns, received_ns : int
-            Times of the host, in ns since the epoch, when the request was sent and when the
-            response came.
+        * `sent_ns`, `received_ns`: times of the host, in ns since the epoch, when the request was
+          sent and when the response came.
 
-        Returns
-        -------
-        ControlRequest or None
-            `SET_TIME` at first, and whenever the clock is more than 1 ms away; else `SET_RATE`.
-            `None` if the sample does not count, because its delay is more than twice the usual one.
+        Returns: `SET_TIME` at first, and whenever the clock is more than 1 ms away; else
+        `SET_RATE`. `None` if the sample does not count, because its delay is more than twice the
+        usual one.
         """
         delay = received_ns - sent_ns
         self._delays.append(delay)
@@ -107,15 +95,9 @@ def ptp_clock(device: str) -> Callable[[], int]:
     Such a clock often runs in TAI, or has never been set. So its whole seconds become those of the
     system's clock, which ROS has, as they are now.
 
-    Parameters
-    ----------
-    device : str
-        Such as ``/dev/ptp0``.
+    * `device`: such as ``/dev/ptp0``.
 
-    Raises
-    ------
-    UserError
-        If it cannot be read; also later, by the function.
+    Raises `UserError` if it cannot be read; also later, by the function.
     """
     try:
         file = os.open(device, os.O_RDONLY | os.O_CLOEXEC)

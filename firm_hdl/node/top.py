@@ -52,10 +52,7 @@ class NodeTop(ComponentTop):
 def node_ports(node: Node) -> tuple[ComponentPort, ...]:
     """List the ports of the top level of a node: clock, reset, and those of its members.
 
-    Raises
-    ------
-    UserError
-        If the node has more input bits than Amaranth elaborates.
+    Raises `UserError` if the node has more input bits than Amaranth elaborates.
     """
     return _plain(node).ports
 

@@ -100,38 +100,21 @@ def build_plan(
 
 @dataclass(slots=True)
 class _Builder:
-    """The state of planning: the leaves and items so far, and the open segment.
+    """The state of planning: the leaves and items so far, and the open segment."""
 
-    Attributes
-    ----------
-    layout, bus_bytes, max_message_bytes
-        As for :func:`build_plan`.
-    has_lengths : bool
-        Whether the message has any length.
-    charges : dict of Path to Charge
-        What lengths claim, by the path of the string or sequence.
-    leaves : list of Leaf
-        In wire order.
-    open : list of list of Item
-        The items of the message so far, and those of the body of each open loop.
-    segment : list of Slice
-        Values that have not been cut into steps.
-    segment_align : int
-        Alignment of the segment's first step that the circuit computes; 1: no such alignment.
-    rest : int or None
-        The leaf of items whose rest the next step takes.
-    """
-
+    # As for `build_plan`.
     layout: Layout
     bus_bytes: int
     max_message_bytes: int
-    has_lengths: bool
-    charges: dict[Path, Charge]
-    leaves: list[Leaf] = field(default_factory=list)
+    has_lengths: bool  # Whether the message has any length.
+    charges: dict[Path, Charge]  # What lengths claim, by the path of the string or sequence.
+    leaves: list[Leaf] = field(default_factory=list)  # In wire order.
+    # The items of the message so far, and those of the body of each open loop.
     open: list[list[Item]] = field(default_factory=lambda: [[]])
-    segment: list[Slice] = field(default_factory=list)
+    segment: list[Slice] = field(default_factory=list)  # Values that have not been cut into steps.
+    # Alignment of the segment's first step that the circuit computes; 1: no such alignment.
     segment_align: int = 1
-    rest: int | None = None
+    rest: int | None = None  # The leaf of items whose rest the next step takes.
 
     def build(self) -> tuple[Item, ...]:
         rules = self.layout.rules

@@ -43,18 +43,12 @@ class Head:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """One difference.
+    """One difference."""
 
-    Attributes
-    ----------
-    path : str
-        Place in the plan: ``plan[run of name.items].limit``. A step is named by the first leaf of
-        its map.
-    old, new : str or None
-        The text at this place; `None` if the plan does not have it.
-    """
-
+    # Place in the plan: `plan[run of name.items].limit`. A step is named by the first leaf of its
+    # map.
     path: str
+    # The text at this place; `None` if the plan does not have it.
     old: str | None
     new: str | None
 
@@ -78,15 +72,10 @@ class Change:
 def compare(old: str, new: str) -> list[Change]:
     """Compare two plans in YAML.
 
-    Returns
-    -------
-    list of Change
-        Empty if the plans mean the same. In the order of the new plan; removed parts come last.
+    Returns nothing if the plans mean the same. Changes are in the order of the new plan; removed
+    parts come last.
 
-    Raises
-    ------
-    ValueError
-        If a text is not a plan.
+    Raises `ValueError` if a text is not a plan.
     """
     before, after = _Facts(_read(old)), _Facts(_read(new))
     # An item that only one plan has is one change, not one for each of its entries.
@@ -107,10 +96,7 @@ def compare(old: str, new: str) -> list[Change]:
 def head_of(text: str) -> Head:
     """Return what a plan in YAML is of.
 
-    Raises
-    ------
-    ValueError
-        If the text is not a plan.
+    Raises `ValueError` if the text is not a plan.
     """
     document = _read(text)
     message, wire = document.get("message"), document.get("wire")
@@ -130,10 +116,7 @@ def _read(text: str) -> dict[str, Any]:
 
     Only its form is read, not whether it is sound.
 
-    Raises
-    ------
-    ValueError
-        If the text is not YAML, or not that of a plan.
+    Raises `ValueError` if the text is not YAML, or not that of a plan.
     """
     document = _plain(_compose(text), set(), 0)
     if not isinstance(document, dict) or not isinstance(document.get("plan"), list):
@@ -188,21 +171,13 @@ def _plain(node: yaml.Node | None, seen: set[int], level: int) -> Any:
 
 
 class _Facts:
-    """What a plan says.
-
-    Attributes
-    ----------
-    texts : dict of str to str
-        Every value, by its path.
-    around : dict of str to tuple of str
-        For each path of a value: the paths of the items that it is in, outermost first.
-    orders : dict of str to list of str
-        The names of leaves, and of the items of each body, in their order.
-    """
+    """What a plan says."""
 
     def __init__(self, document: Mapping[str, Any]):
-        self.texts: dict[str, str] = {}
+        self.texts: dict[str, str] = {}  # Every value, by its path.
+        # For each path of a value: the paths of the items that it is in, outermost first.
         self.around: dict[str, tuple[str, ...]] = {}
+        # The names of leaves, and of the items of each body, in their order.
         self.orders: dict[str, list[str]] = {}
         head = {key: value for key, value in document.items() if key != "plan"}
         for key, value in head.items():

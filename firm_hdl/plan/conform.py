@@ -19,21 +19,11 @@ Number: TypeAlias = "int | tuple[int | None, bool]"
 
 @dataclass(slots=True)
 class _Row:
-    """A leaf, items or a loop.
+    """A leaf, items or a loop."""
 
-    Attributes
-    ----------
-    what : str
-        A leaf with its kind and type; or "loop".
-    count : Number or None
-        Number of items or elements.
-    body : list of _Row
-        The element of a loop.
-    """
-
-    what: str
-    count: Number | None = None
-    body: list[_Row] | None = None
+    what: str  # A leaf with its kind and type; or "loop".
+    count: Number | None = None  # Number of items or elements.
+    body: list[_Row] | None = None  # The element of a loop.
 
 
 def against_layout(plan: Plan, layout: Layout) -> list[str]:

@@ -18,17 +18,11 @@ def step_sizes(
     A step takes up to a bus word. The last step may take two words if it takes no rest of a run. A
     stream has one transfer per cycle, so a step ends between two transfers of a leaf.
 
-    Parameters
-    ----------
-    segment : list of Slice
-        With at least one slice; all transfers in it are whole.
-    bus_bytes : int
-    at_start : bool
-        Whether the segment starts a packet. It is then cut at bus words, which needs no rotator.
-    may_be_wide : bool
-        Whether a last step may take two words.
-    has_rest : bool
-        Whether the first step takes the rest of a run.
+    * `segment`: with at least one slice; all transfers in it are whole.
+    * `at_start`: whether the segment starts a packet. It is then cut at bus words, which needs no
+      rotator.
+    * `may_be_wide`: whether a last step may take two words.
+    * `has_rest`: whether the first step takes the rest of a run.
     """
     sizes: list[int] = []
     for piece in _pieces(segment):

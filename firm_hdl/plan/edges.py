@@ -40,10 +40,7 @@ def _ways(
 ) -> Iterator[Edge]:
     """Yield what may follow each step of items inside `level` loops.
 
-    Parameters
-    ----------
-    after : sequence of str
-        What may follow the last item.
+    * `after`: what may follow the last item.
     """
     ends = [NEXT] * (len(items) - 1) + [after]
     for place, (index, item) in enumerate(numbered(items, first)):

@@ -79,12 +79,8 @@ def check_bus_bytes(bus_bytes: int) -> None:
 def check_max_message_bytes(layout: Layout, max_message_bytes: int) -> None:
     """Check the size of the longest packet that the converters of a layout take.
 
-    Raises
-    ------
-    TypeError
-        If the size is not an integer.
-    ValueError
-        If no message of the type has so few bytes, or the size is above 2**32 - 1.
+    Raises `TypeError` if the size is not an integer. Raises `ValueError` if no message of the type
+    has so few bytes, or the size is above 2**32 - 1.
     """
     # In Python, a bool is an integer, too.
     if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):

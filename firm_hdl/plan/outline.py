@@ -35,11 +35,7 @@ NO_GAP = Gap(align=1, bytes=0)
 def outline(layout: Layout, bus_bytes: int) -> Layout:
     """Return a layout with the same lengths, and with bytes in place of all else.
 
-    Parameters
-    ----------
-    layout : Layout
-    bus_bytes : int
-        Bytes are cut so that a plan for a bus of this width has few steps.
+    * `bus_bytes`: bytes are cut so that a plan for a bus of this width has few steps.
     """
     numbers = count()
     nodes = tuple(_outline(layout.nodes, bus_bytes, numbers))

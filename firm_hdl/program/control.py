@@ -12,18 +12,10 @@ __all__ = ["Control", "Load", "Transition", "control_of", "start_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """A counter that a transition loads with a constant.
+    """A counter that a transition loads with a constant."""
 
-    Attributes
-    ----------
-    level : int or None
-        The loop whose elements are counted; `None`: the words of a run.
-    number : int
-        Elements or words.
-    """
-
-    level: int | None
-    number: int
+    level: int | None  # The loop whose elements are counted; `None`: the words of a run.
+    number: int  # Elements or words.
 
     def __str__(self) -> str:
         return f"{'words' if self.level is None else f'level {self.level}'} = {self.number}"
@@ -31,20 +23,11 @@ class Load:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Transition:
-    """The way to a state.
+    """The way to a state."""
 
-    Attributes
-    ----------
-    to : int or None
-        Number of the state; `None`: the packet ends.
-    loads : tuple of Load
-        Loops and runs of constant count that start at the state.
-    level : int or None
-        The transition is taken only if this loop has more than one element left.
-    """
-
-    to: int | None
-    loads: tuple[Load, ...] = ()
+    to: int | None  # Number of the state; `None`: the packet ends.
+    loads: tuple[Load, ...] = ()  # Loops and runs of constant count that start at the state.
+    # The transition is taken only if this loop has more than one element left.
     level: int | None = None
 
     def __str__(self) -> str:
@@ -56,29 +39,17 @@ class Transition:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Control:
-    """The transitions of a state.
+    """The transitions of a state."""
 
-    Attributes
-    ----------
-    item : Step or Run
-        What the state does.
-    level : int
-        Number of loops around the state.
-    body : Transition or None
-        Into the body of the run or loop that a length of the state counts, or to the next word of
-        the same run. `None`: the state always takes an exit.
-    exits : tuple of Transition
-        In the order in which they are tried: the innermost loop first. The last one is always
-        possible.
-    begin : Run, Loop or None
-        What a length of the state counts.
-    """
-
-    item: Step | Run
-    level: int
+    item: Step | Run  # What the state does.
+    level: int  # Number of loops around the state.
+    # Into the body of the run or loop that a length of the state counts, or to the next word of the
+    # same run. `None`: the state always takes an exit.
     body: Transition | None
+    # In the order in which they are tried: the innermost loop first. The last one is always
+    # possible.
     exits: tuple[Transition, ...]
-    begin: Run | Loop | None = None
+    begin: Run | Loop | None = None  # What a length of the state counts.
 
 
 def start_of(plan: Plan) -> Transition:

@@ -29,81 +29,46 @@ class NextPosition:
     """The way from a state's last byte to the last byte of the next state.
 
     To align a position, a circuit adds a distance, clears low bits, and sets them.
-
-    Attributes
-    ----------
-    add : int
-        The distance before alignment. It includes what the rounding and the next state's own bytes
-        need, if alignment counts from a constant; else it is 1.
-    mask : int
-        The low bits that alignment clears.
-    low : int
-        Their new value; a distance after alignment, if alignment does not count from a constant.
-    over_rest : bool
-        The rest of a run comes between: its distance, a register, replaces `add`.
     """
 
+    # The distance before alignment. It includes what the rounding and the next state's own bytes
+    # need, if alignment counts from a constant; else it is 1.
     add: int
-    mask: int
+    mask: int  # The low bits that alignment clears.
+    # Their new value; a distance after alignment, if alignment does not count from a constant.
     low: int
+    # The rest of a run comes between: its distance, a register, replaces `add`.
     over_rest: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeserializerState(State):
-    """A state of the sequencer.
+    """A state of the sequencer."""
 
-    Attributes
-    ----------
-    at_end : bool
-        The message is complete; the state waits for the end of the packet.
-    last_offset : int
-        Distance from the first byte of the map or word to its last one; -1 if it has none.
-    map_offset : int
-        Distance from the last byte to the first one of the map's last word.
-    checks : tuple of (int, int)
-        Lane and value of the bytes of the encapsulation header that are checked in the state.
-    is_leading : bool
-        No byte of the packet comes before the end of the state.
-    exit, body_start : NextPosition or None
-        Of the last exit, and of the body.
-    again : tuple of NextPosition or None
-        By loop: of the exit that repeats it.
-    """
-
-    at_end: bool = False
+    at_end: bool = False  # The message is complete; the state waits for the end of the packet.
+    # Distance from the first byte of the map or word to its last one; -1 if it has none.
     last_offset: int
-    map_offset: int
+    map_offset: int  # Distance from the last byte to the first one of the map's last word.
+    # Lane and value of the bytes of the encapsulation header that are checked in the state.
     checks: tuple[tuple[int, int], ...] = ()
-    is_leading: bool = False
+    is_leading: bool = False  # No byte of the packet comes before the end of the state.
+    # Of the last exit, and of the body.
     exit: NextPosition | None = None
     body_start: NextPosition | None = None
-    again: tuple[NextPosition | None, ...] = ()
+    again: tuple[NextPosition | None, ...] = ()  # By loop: of the exit that repeats it.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeserializerProgram(Program[DeserializerState]):
-    """The program of a deserializer or parser.
+    """The program of a deserializer or parser."""
 
-    Attributes
-    ----------
-    has_leaves : bool
-        Whether the circuit writes leaves. A parser does not, and skips elements without bytes.
-    length_lanes : mapping of int to tuple of int
-        By lane, ascending: the states whose map may end in this lane and which begin a run or loop.
-    repeated_leaves : frozenset of int
-        The leaves that may transfer in two states in a row.
-    carried_bytes : int
-        Most bytes of a transfer that a state leaves to a later one.
-    ends_at_once : bool
-        A packet may end in the state in which it starts.
-    """
-
+    # Whether the circuit writes leaves. A parser does not, and skips elements without bytes.
     has_leaves: bool
+    # By lane, ascending: the states whose map may end in this lane and which begin a run or loop.
     length_lanes: Mapping[int, tuple[int, ...]]
-    repeated_leaves: frozenset[int]
-    carried_bytes: int
-    ends_at_once: bool
+    repeated_leaves: frozenset[int]  # The leaves that may transfer in two states in a row.
+    carried_bytes: int  # Most bytes of a transfer that a state leaves to a later one.
+    ends_at_once: bool  # A packet may end in the state in which it starts.
 
     @property
     def has_strings(self) -> bool:
@@ -124,12 +89,8 @@ class DeserializerProgram(Program[DeserializerState]):
 def align_addend(align: int, phase: int, shift: int = 0) -> int:
     """Return the addend after which clearing the low bits rounds a position up.
 
-    Parameters
-    ----------
-    align : int
-        A power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
-    shift : int
-        Bytes that are added after the rounding.
+    * `align`: a power of two, at most 8. Aligned positions are `phase` plus a multiple of `align`.
+    * `shift`: bytes that are added after the rounding.
     """
     return align - 1 - phase % align + (phase % align + shift) // align * align
 

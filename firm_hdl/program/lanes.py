@@ -19,37 +19,21 @@ __all__ = ["StartLanes", "WordLanes", "start_lanes", "word_lanes"]
 
 @dataclass(frozen=True, slots=True)
 class StartLanes:
-    """The lanes at which a state may start, in ascending order.
+    """The lanes at which a state may start, in ascending order."""
 
-    Attributes
-    ----------
-    first : tuple of int
-        Lanes of the first byte after the previous state, where a rest or padding starts.
-    map : tuple of int
-        Lanes of the first byte of the map or of the word of a run.
-    """
-
+    # Lanes of the first byte after the previous state, where a rest or padding starts.
     first: tuple[int, ...]
-    map: tuple[int, ...]
+    map: tuple[int, ...]  # Lanes of the first byte of the map or of the word of a run.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WordLanes:
-    """Where one of the two words of a state may be, over all states.
+    """Where one of the two words of a state may be, over all states."""
 
-    Attributes
-    ----------
-    lanes : tuple of int
-        Lanes of the word's first byte, in ascending order; lane 0 if there is no such word.
-    unit : int
-        Bytes, a power of two: all lanes and sizes of the word are multiples.
-    used : bool
-        Some state has the word.
-    """
-
+    # Lanes of the word's first byte, in ascending order; lane 0 if there is no such word.
     lanes: tuple[int, ...]
-    unit: int
-    used: bool
+    unit: int  # Bytes, a power of two: all lanes and sizes of the word are multiples.
+    used: bool  # Some state has the word.
 
 
 def word_lanes(plan: Plan, starts: Sequence[StartLanes]) -> tuple[WordLanes, WordLanes]:

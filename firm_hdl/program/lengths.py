@@ -14,17 +14,10 @@ __all__ = ["Length", "NextMap", "length_of", "with_columns"]
 
 @dataclass(frozen=True, slots=True)
 class NextMap:
-    """The map or word of a state that follows the items of a run.
-
-    Attributes
-    ----------
-    align : int
-    last_offset : int
-        Distance from its first byte to its last one; -1 if it has none.
-    """
+    """The map or word of a state that follows the items of a run."""
 
     align: int
-    last_offset: int
+    last_offset: int  # Distance from its first byte to its last one; -1 if it has none.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

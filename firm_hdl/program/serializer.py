@@ -26,72 +26,44 @@ LENGTH_BITS = 32
 
 @dataclass(frozen=True, slots=True)
 class WireByte:
-    """A byte of a state's words.
+    """A byte of a state's words."""
 
-    Attributes
-    ----------
-    leaf : int or None
-        The leaf that the byte belongs to; `None` for a constant.
-    at : int
-        Number of the byte in the transfer, or the value of the constant.
-    slot : int
-        Number of the byte's transfer in the state; -1 for a constant, or if a later state takes the
-        transfer.
-    """
-
-    leaf: int | None
-    at: int
+    leaf: int | None  # The leaf that the byte belongs to; `None` for a constant.
+    at: int  # Number of the byte in the transfer, or the value of the constant.
+    # Number of the byte's transfer in the state; -1 for a constant, or if a later state takes the
+    # transfer.
     slot: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SerializerState(State):
-    """A state of the collector.
+    """A state of the collector."""
 
-    Attributes
-    ----------
-    word_bytes, item_word_bytes : int
-        Bytes in the word of the map and in that of items. The rest, whose size varies, is not
-        counted.
-    map_mask, map_addend : int
-        To align the map: the low bits to clear, and the addend of the rounding, if alignment counts
-        from a constant.
-    is_final_tail : bool
-        The state always ends the packet, and takes nothing but a rest.
-    may_wait_for_status : bool
-        The state may take its length, and then wait until `status` is free. A length is the last
-        transfer of its state; so nothing else can delay the state after it.
-    precedes_leaves : bool
-        Only constants come before the end of the state.
-    items, map : tuple of (int, WireByte)
-        Lanes and bytes of the two words.
-    """
-
+    # Bytes in the word of the map and in that of items. The rest, whose size varies, is not
+    # counted.
     word_bytes: int
     item_word_bytes: int
+    # To align the map: the low bits to clear, and the addend of the rounding, if alignment counts
+    # from a constant.
     map_mask: int
     map_addend: int
-    is_final_tail: bool
+    is_final_tail: bool  # The state always ends the packet, and takes nothing but a rest.
+    # The state may take its length, and then wait until `status` is free. A length is the last
+    # transfer of its state; so nothing else can delay the state after it.
     may_wait_for_status: bool
-    precedes_leaves: bool
+    precedes_leaves: bool  # Only constants come before the end of the state.
+    # Lanes and bytes of the two words.
     items: tuple[tuple[int, WireByte], ...]
     map: tuple[tuple[int, WireByte], ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SerializerProgram(Program[SerializerState]):
-    """The program of a serializer.
+    """The program of a serializer."""
 
-    Attributes
-    ----------
-    most_beats : int
-        Largest number of beats that a state touches, its padding included.
-    may_end_without_bytes : bool
-        A packet may end in a state without bytes. Then its last beat may be full before it is known
-        to be the last one.
-    """
-
-    most_beats: int
+    most_beats: int  # Largest number of beats that a state touches, its padding included.
+    # A packet may end in a state without bytes. Then its last beat may be full before it is known
+    # to be the last one.
     may_end_without_bytes: bool
 
 

@@ -69,48 +69,25 @@ class State:
 
     A state takes the rest of a run, then a map: bytes whose places are static. The state of a run's
     words takes one word instead.
-
-    Attributes
-    ----------
-    number : int
-    name : str
-        Identifier, unique in the program, after the leaves that the state handles.
-    body : Transition or None
-        Into the body of the run or loop that `length` counts, or to the next word of the same run.
-    exits : tuple of Transition
-        The other transitions; see :class:`Control`.
-    is_words, is_counted : bool
-        The state takes a word of a run, and a length counts the items of this run.
-    takes_rest : bool
-        The state takes the rest of a run before its map.
-    rest_unit : int
-        Bytes of an item of this rest; 0 without.
-    align, map_bytes : int
-        Alignment and size of the map.
-    two_word_map : bool
-        The map has more bytes than a bus word.
-    length : Length or None
-        The length at the end of the map.
-    transfers : tuple of Transfer
-        In wire order.
-    cut : Part or None
-        The bytes of a transfer that a later state completes.
     """
 
     number: int
-    name: str
+    name: str  # Identifier, unique in the program, after the leaves that the state handles.
+    # Into the body of the run or loop that `length` counts, or to the next word of the same run.
     body: Transition | None = None
-    exits: tuple[Transition, ...] = ()
+    exits: tuple[Transition, ...] = ()  # The other transitions; see `Control`.
+    # The state takes a word of a run, and a length counts the items of this run.
     is_words: bool = False
     is_counted: bool = False
-    takes_rest: bool = False
-    rest_unit: int = 0
+    takes_rest: bool = False  # The state takes the rest of a run before its map.
+    rest_unit: int = 0  # Bytes of an item of this rest; 0 without.
+    # Alignment and size of the map.
     align: int = 1
     map_bytes: int = 0
-    two_word_map: bool = False
-    length: Length | None = None
-    transfers: tuple[Transfer, ...] = ()
-    cut: Part | None = None
+    two_word_map: bool = False  # The map has more bytes than a bus word.
+    length: Length | None = None  # The length at the end of the map.
+    transfers: tuple[Transfer, ...] = ()  # In wire order.
+    cut: Part | None = None  # The bytes of a transfer that a later state completes.
 
     def successors(self) -> Iterator[Transition]:
         """Yield all transitions: the body, then the exits."""
@@ -144,29 +121,17 @@ AnyState = TypeVar("AnyState", bound=State)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Program(Generic[AnyState]):
-    """A plan as a circuit of one direction needs it.
-
-    Attributes
-    ----------
-    plan : Plan
-    states : tuple of State
-        By number; that of a state is also the index of its step in the plan.
-    start : Transition
-        To the first state of each packet.
-    end : int or None
-        The state that waits for the end of the packet; `None`: there is none.
-    most_counted : int or None
-        Largest length that a counter is loaded with; `None`: the length's own limit.
-    items, map : WordLanes
-        Where the two words of a state may be: the rest, counted items or the first word of a map
-        with two, and the map or another word.
-    """
+    """A plan as a circuit of one direction needs it."""
 
     plan: Plan
+    # By number; that of a state is also the index of its step in the plan.
     states: tuple[AnyState, ...]
-    start: Transition
-    end: int | None = None
+    start: Transition  # To the first state of each packet.
+    end: int | None = None  # The state that waits for the end of the packet; `None`: there is none.
+    # Largest length that a counter is loaded with; `None`: the length's own limit.
     most_counted: int | None = None
+    # Where the two words of a state may be: the rest, counted items or the first word of a map with
+    # two, and the map or another word.
     items: WordLanes
     map: WordLanes
 

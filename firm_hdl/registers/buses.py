@@ -105,15 +105,10 @@ def bus_member(table: RegisterMap, bus: BusKind) -> dict[str, Any]:
 def add_registers(m: Module, port: Any, table: RegisterMap, interrupt: Value) -> Any:
     """Add registers; return their block.
 
-    Parameters
-    ----------
-    port : interface
-        A bus of :func:`bus_member`, seen from its master.
-    table : RegisterMap
-        Begins with the registers of :mod:`firm_hdl.registers.head`. What ``control.reset`` clears
-        besides the block is up to the caller.
-    interrupt : Value
-        A register that is high while an event is set whose interrupt is enabled.
+    * `port`: a bus of :func:`bus_member`, seen from its master.
+    * `table`: begins with the registers of :mod:`firm_hdl.registers.head`. What ``control.reset``
+      clears besides the block is up to the caller.
+    * `interrupt`: a register that is high while an event is set whose interrupt is enabled.
     """
     slave: AxiLiteSlave | CsrSlave
     if hasattr(port, "awvalid"):

@@ -74,10 +74,7 @@ _FINGERPRINT = ("fingerprint_low", "fingerprint_high")
 def c_header(layout: MessageMap, header: str = "") -> str:
     """Write the header of the registers of a message.
 
-    Parameters
-    ----------
-    header : str
-        Lines of the comment at the head.
+    * `header`: lines of the comment at the head.
     """
     name, prefix = layout.table.name, layout.table.name.upper()
     words = -(-layout.size // 4)
@@ -111,16 +108,10 @@ def table_c_header(
 ) -> str:
     """Write a header of a table that begins with those of :mod:`firm_hdl.registers.head`.
 
-    Parameters
-    ----------
-    header : str
-        Lines of the comment at the head.
-    types : iterable of str
-        Lines of C behind the addresses.
-    same : iterable of str
-        Constants of 32 bits that tell whether the registers are those of the header.
-    functions : str
-        C behind the function ``NAME_is``.
+    * `header`: lines of the comment at the head.
+    * `types`: lines of C behind the addresses.
+    * `same`: constants of 32 bits that tell whether the registers are those of the header.
+    * `functions`: C behind the function ``NAME_is``.
     """
     name, prefix = table.name, table.name.upper()
     comment = "".join(f" * {_plain(line)}".rstrip() + "\n" for line in header.splitlines())

@@ -22,13 +22,8 @@ __all__ = ["RegisterReceiver", "RegisterSender"]
 class _Registers(Component):
     """A converter behind the registers of a message.
 
-    Parameters
-    ----------
-    layout : MessageMap
-        Made with `plan`, and with the direction of the class.
-    plan : Plan
-        The plan of the converter.
-    bus : "axi4lite" or "csr"
+    * `layout`: made with `plan`, and with the direction of the class.
+    * `plan`: the plan of the converter.
     """
 
     axi: Any

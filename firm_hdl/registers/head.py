@@ -40,12 +40,8 @@ def word(address: int, name: str, kind: Kind, meaning: str, reset: int = 0) -> R
 def identity_registers(fingerprint: int, meaning: str) -> tuple[Register, ...]:
     """Return what tells software whether it knows these registers.
 
-    Parameters
-    ----------
-    fingerprint : int
-        64 bits.
-    meaning : str
-        What these depend on.
+    * `fingerprint`: 64 bits.
+    * `meaning`: what these depend on.
     """
     return (
         word(0x00, "id", "constant", "The text FIRM.", ID),

@@ -57,31 +57,15 @@ class Item:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageMap:
-    """The registers of a message type.
+    """The registers of a message type."""
 
-    Attributes
-    ----------
-    name : str
-        Of the type, as a word of C; the same for both directions.
-    message : Message
-    direction : "deserializer" or "serializer"
-        ``deserializer``: software reads messages that come.
-    items : tuple of Item
-    shape : StructLayout
-        The record, with the fields that the registers have.
-    size : int
-        Bytes of the block, and of the struct.
-    pieces : dict of str to tuple of int
-        By the name of a field of the table: the bits of the record that it has.
-    table : RegisterMap
-    """
-
-    name: str
+    name: str  # Of the type, as a word of C; the same for both directions.
     message: Message
-    direction: Direction
+    direction: Direction  # `deserializer`: software reads messages that come.
     items: tuple[Item, ...]
-    shape: data.StructLayout
-    size: int
+    shape: data.StructLayout  # The record, with the fields that the registers have.
+    size: int  # Bytes of the block, and of the struct.
+    # By the name of a field of the table: the bits of the record that it has.
     pieces: dict[str, tuple[int, int]]
     table: RegisterMap
 
@@ -91,10 +75,8 @@ def message_map(message: Message, plan: Plan, direction: Direction) -> MessageMa
 
     The table has the name of the type, with ``_rx`` if software reads messages, else ``_tx``.
 
-    Raises
-    ------
-    ValueError
-        If the message has no fields of fixed size, or more than 4,096 bytes of them.
+    Raises `ValueError` if the message has no fields of fixed size, or more than 4,096 bytes of
+    them.
     """
     shape = record_layout(message, wire=plan.wire)
     size, _ = size_of(message, shape)

@@ -20,10 +20,7 @@ _ACCESS = {
 def system_rdl(table: RegisterMap, header: str = "") -> str:
     """Write a table.
 
-    Parameters
-    ----------
-    header : str
-        Lines of the comment at the head.
+    * `header`: lines of the comment at the head.
     """
     lines = [f"// {line}".rstrip() for line in header.splitlines()]
     lines += [

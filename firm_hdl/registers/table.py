@@ -23,25 +23,15 @@ reads 0. ``event``: the hardware sets it; software reads it, and clears it with 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Field:
-    """Bits of a register.
-
-    Attributes
-    ----------
-    name : str
-    low, bits : int
-        Lowest bit, and number of bits.
-    kind : Kind
-    meaning : str
-    reset : int
-        Value of a constant, and after a reset of a setting.
-    """
+    """Bits of a register."""
 
     name: str
+    # Lowest bit, and number of bits.
     low: int
     bits: int
     kind: Kind
     meaning: str
-    reset: int = 0
+    reset: int = 0  # Value of a constant, and after a reset of a setting.
 
     @property
     def is_written(self) -> bool:
@@ -51,21 +41,11 @@ class Field:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Register:
-    """A word of 32 bits.
-
-    Attributes
-    ----------
-    name : str
-    address : int
-        In bytes from the begin of the map.
-    fields : tuple of Field
-        Bits without a field read as 0.
-    meaning : str
-    """
+    """A word of 32 bits."""
 
     name: str
-    address: int
-    fields: tuple[Field, ...]
+    address: int  # In bytes from the begin of the map.
+    fields: tuple[Field, ...]  # Bits without a field read as 0.
     meaning: str
 
     @property
@@ -78,20 +58,10 @@ class Register:
 class RegisterMap:
     """All registers of a block, in the order of their addresses.
 
-    Attributes
-    ----------
-    name : str
-        A word, as C and SystemRDL allow it.
-    registers : tuple of Register
-    meaning : str
-
-    Raises
-    ------
-    ValueError
-        If words or fields overlap, lie outside, or have one name.
+    Raises `ValueError` if words or fields overlap, lie outside, or have one name.
     """
 
-    name: str
+    name: str  # A word, as C and SystemRDL allow it.
     registers: tuple[Register, ...]
     meaning: str
 

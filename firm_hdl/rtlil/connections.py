@@ -18,9 +18,7 @@ __all__ = ["check_connections", "components_of", "streams_of"]
 def check_connections(design: Fragment) -> None:
     """Check that no stream of a component is connected twice: the last connection would count.
 
-    Raises
-    ------
-    wiring.ConnectionError
+    Raises `wiring.ConnectionError`.
     """
     sources: dict[int, list[Signal]] = {}
     stack = [design]

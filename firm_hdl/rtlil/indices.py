@@ -21,10 +21,8 @@ _INDEXED = re.compile(r"\\(\S*\[\S*)")
 def without_indices(design: str) -> str:
     """Rename ``data[1]`` to ``data_1``, in all modules.
 
-    Parameters
-    ----------
-    design : str
-        RTLIL, as Amaranth prints it. An index in brackets after a space is not part of a name.
+    * `design`: RTLIL, as Amaranth prints it. An index in brackets after a space is not part of a
+      name.
     """
     used = {name.lower() for name in _IDENTIFIER.findall(design)}
     names: dict[str, str] = {}

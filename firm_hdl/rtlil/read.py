@@ -53,20 +53,11 @@ _ESCAPES = {"t": "\t", "r": "\r", "n": "\n"}
 def parse(text: str) -> Design:
     """Parse the text that `amaranth.back.rtlil.convert` returns.
 
-    Parameters
-    ----------
-    text : str
-        RTLIL, with or without source attributes, which are dropped.
+    * `text`: RTLIL, with or without source attributes, which are dropped.
 
-    Returns
-    -------
-    Design
-        All modules.
+    Returns: all modules.
 
-    Raises
-    ------
-    ValueError
-        If Amaranth 0.5 prints no such line. The message has the number of the line.
+    Raises `ValueError` if Amaranth 0.5 prints no such line. The message has the number of the line.
     """
     return Design(modules={module.name: module for module in _Parser(text).modules()})
 

@@ -44,10 +44,7 @@ _OUTPUTS = {"$dff": "Q", "$adff": "Q", "$memrd_v2": "DATA", "$tribuf": "Y"}
 def netlist_of(text: str) -> Design:
     """Read RTLIL as Amaranth prints it, simplify it, and read fields of structures by name.
 
-    Raises
-    ------
-    ValueError
-        If Amaranth 0.5 prints no such text, or the design is empty.
+    Raises `ValueError` if Amaranth 0.5 prints no such text, or the design is empty.
     """
     design = parse(text)
     if not design.modules:
@@ -173,13 +170,9 @@ class _Simplifier:
     ) -> tuple[Statement, ...]:
         """Simplify statements.
 
-        Parameters
-        ----------
-        state : Spec or None
-            Value of the whole target after the statements before, if known.
-        start : bool
-            Whether the body is that of a process, whose first assignment is the default of the
-            whole target.
+        * `state`: value of the whole target after the statements before, if known.
+        * `start`: whether the body is that of a process, whose first assignment is the default of
+          the whole target.
         """
         result: list[Statement] = []
         pending = list(reversed(body))

@@ -30,23 +30,13 @@ _ROLE = re.compile(r":\w+:`\.?(\w+)`")
 def rtlil_of(design: Any, *, name: str, ports: Any = None, platform: Any = None) -> str:
     """Return the RTLIL of a design, without source attributes, which have paths of the machine.
 
-    Parameters
-    ----------
-    design : elaboratable or str
-        A component or other elaboratable, or already RTLIL.
-    name : str
-        Name of the outermost module.
-    ports, platform
-        As for `amaranth.back.rtlil.convert`; a component needs no ports.
+    * `design`: a component or other elaboratable, or already RTLIL.
+    * `name`: name of the outermost module.
+    * `ports`, `platform`: as for `amaranth.back.rtlil.convert`; a component needs no ports.
 
-    Raises
-    ------
-    TypeError
-        If the design or its name is none, or an elaboratable that is no component has no ports.
-    ValueError
-        If the name is no word.
-    wiring.ConnectionError
-        As :func:`.check_connections`.
+    Raises `TypeError` if the design or its name is none, or an elaboratable that is no component
+    has no ports. Raises `ValueError` if the name is no word. Raises `wiring.ConnectionError`: as
+    :func:`.check_connections`.
     """
     if not isinstance(name, str):
         raise TypeError(f"Name of a design must be a text, not {name!r}")

@@ -53,19 +53,12 @@ class _Incomplete:
 class Backlog:
     """What waits of one writer.
 
-    Parameters
-    ----------
-    prefix : bytes
-        GUID prefix of the writer.
-    budget : Budget
-        The memory, which peers share.
-    in_order : bool
-        Whether samples are delivered in order, so that the first ones count most. Of a best-effort
-        writer, the last one does.
-    most_bytes : int
-        The largest sample.
-    counters : Counter
-        Counts what was ``refused``.
+    * `prefix`: GUID prefix of the writer.
+    * `budget`: the memory, which peers share.
+    * `in_order`: whether samples are delivered in order, so that the first ones count most. Of a
+      best-effort writer, the last one does.
+    * `most_bytes`: the largest sample.
+    * `counters`: counts what was ``refused``.
     """
 
     def __init__(

@@ -11,15 +11,9 @@ _OVERHEAD_BYTES = 200
 
 
 class Holder(Protocol):
-    """Who takes memory.
+    """Who takes memory."""
 
-    Attributes
-    ----------
-    prefix : bytes
-        GUID prefix of the peer on whose account it is.
-    """
-
-    prefix: bytes
+    prefix: bytes  # GUID prefix of the peer on whose account it is.
 
     def shrink(self) -> None:
         """Give some of the memory back; called only if there is some."""
@@ -31,10 +25,7 @@ class Budget:
     As long as there is enough, each takes what it needs. After that, the peer that has most gives
     some back to one that has less. So a peer always gets its share, whatever the others do.
 
-    Parameters
-    ----------
-    limit : int
-        Number of bytes.
+    * `limit`: number of bytes.
     """
 
     def __init__(self, limit: int):
@@ -50,10 +41,7 @@ class Budget:
     def take(self, holder: Holder, size: int) -> bool:
         """Take the memory of a value of `size` bytes, perhaps from others.
 
-        Returns
-        -------
-        bool
-            `False` if nobody has more than the holder would have then.
+        Returns: `False` if nobody has more than the holder would have then.
         """
         size += _OVERHEAD_BYTES
         while self.used + size > self.limit:

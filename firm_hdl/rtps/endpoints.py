@@ -38,26 +38,17 @@ class ClosedError(RuntimeError):
 
 
 class Endpoint:
-    """What writers and readers of a user have in common.
-
-    Attributes
-    ----------
-    guid : Guid
-        Name of the endpoint.
-    topic, type_name : str
-        The names on the wire.
-    on_match : callable or None
-        Called with another endpoint, and whether it came (`True`) or went.
-    on_incompatible : callable or None
-        Called with another endpoint whose policies do not fit, and the names of those.
-    """
+    """What writers and readers of a user have in common."""
 
     def __init__(self, participant: Participant, guid: Guid, topic: str, type_name: str):
         self._participant = participant
-        self.guid = guid
+        self.guid = guid  # Name of the endpoint.
+        # The names on the wire.
         self.topic = topic
         self.type_name = type_name
+        # Called with another endpoint, and whether it came (`True`) or went.
         self.on_match: OnMatch | None = None
+        # Called with another endpoint whose policies do not fit, and the names of those.
         self.on_incompatible: OnIncompatible | None = None
 
     @property
@@ -68,10 +59,7 @@ class Endpoint:
     def wait_for_match(self, count: int = 1, timeout: float = 10.0) -> bool:
         """Wait until it is matched with `count` endpoints, at most `timeout` seconds.
 
-        Raises
-        ------
-        RuntimeError
-            The caller is a callback.
+        Raises `RuntimeError`: the caller is a callback.
         """
         return self._participant.wait_until(lambda: len(self.matched) >= count, timeout)
 
@@ -101,25 +89,14 @@ class DataWriter(Endpoint):
     ) -> int:
         """Write a sample, and return its sequence number.
 
-        Parameters
-        ----------
-        payload : bytes
-            The serialized sample with its encapsulation header of 4 bytes.
-        related : SampleIdentity or None
-            The sample that this one answers.
-        timeout : float
-            Seconds to wait for room, if the writer keeps all samples (`Qos.depth` 0).
-        to : collection of Guid or None
-            The readers that get it; by default all.
+        * `payload`: the serialized sample with its encapsulation header of 4 bytes.
+        * `related`: the sample that this one answers.
+        * `timeout`: seconds to wait for room, if the writer keeps all samples (`Qos.depth` 0).
+        * `to`: the readers that get it; by default all.
 
-        Raises
-        ------
-        ClosedError
-            The writer, or its participant, is closed.
-        HistoryFullError
-            There was no room in time.
-        TypeError, ValueError
-            A parameter is none of the above. Nothing was written.
+        Raises `ClosedError`: the writer, or its participant, is closed. Raises `HistoryFullError`:
+        there was no room in time. Raises `TypeError` or `ValueError`: a parameter is none of the
+        above. Nothing was written.
         """
         if not isinstance(payload, bytes | bytearray | memoryview):
             raise TypeError(f"a sample is bytes, not {type(payload).__name__}")

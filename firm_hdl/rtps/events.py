@@ -22,26 +22,14 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sample:
-    """A sample of a peer.
+    """A sample of a peer."""
 
-    Attributes
-    ----------
-    payload : bytes
-        The serialized sample with its encapsulation header of 4 bytes.
-    writer : Guid
-        Who wrote it.
-    sequence_number : int
-        Its number at the writer, from 1 on.
-    source_timestamp : int or None
-        When the writer wrote it, in nanoseconds since 1970, where it says so.
-    related : SampleIdentity or None
-        The sample that it answers, where it names one; see :mod:`firm_hdl.rtps.ros.services`.
-    """
-
-    payload: bytes
-    writer: Guid
-    sequence_number: int
+    payload: bytes  # The serialized sample with its encapsulation header of 4 bytes.
+    writer: Guid  # Who wrote it.
+    sequence_number: int  # Its number at the writer, from 1 on.
+    # When the writer wrote it, in nanoseconds since 1970, where it says so.
     source_timestamp: int | None = None
+    # The sample that it answers, where it names one; see `firm_hdl.rtps.ros.services`.
     related: SampleIdentity | None = None
 
     @property
@@ -76,17 +64,11 @@ class Unmatched:
 
 @dataclass(frozen=True, slots=True)
 class Incompatible:
-    """Topic and type of two endpoints are equal, but the reader asks for more than it is offered.
-
-    Attributes
-    ----------
-    policies : tuple of str
-        The policies in question, such as ``"RELIABILITY"``.
-    """
+    """Topic and type of two endpoints are equal, but the reader asks for more than is offered."""
 
     local: Guid
     remote: EndpointData
-    policies: tuple[str, ...]
+    policies: tuple[str, ...]  # The policies in question, such as `"RELIABILITY"`.
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,10 +46,7 @@ _CHUNK_BYTES = 16 << 10
 class Pacer:
     """A token bucket.
 
-    Parameters
-    ----------
-    bytes_per_second : float
-        The rate in the long run. A burst of 64 KiB passes at once.
+    * `bytes_per_second`: the rate in the long run. A burst of 64 KiB passes at once.
     """
 
     def __init__(self, bytes_per_second: float):
@@ -91,39 +88,23 @@ OnEvent: TypeAlias = Callable[[Event], None]
 class Participant:
     """A participant of a domain. It is also a context manager, which closes it.
 
-    Parameters
-    ----------
-    domain : int
-        The domain, from 0 to 232.
-    interface : str or None
-        An interface or its IPv4 address; `None` for the one that multicast goes to. All traffic
-        stays on it, so ``"lo"`` stays on the host.
-    name : str
-        Name of the participant, which tools show.
-    user_data : bytes
-        What it announces in addition.
-    peers : tuple of str
-        IPv4 addresses of hosts that multicast does not reach. Without multicast, and on the
-        loopback interface, which may have none, this host is one of them.
-    multicast : bool
-        Whether it announces itself by multicast. Announcements of others are received anyway.
-    lease : float
-        Seconds after which peers take this participant for gone if it is silent.
-    period : float
-        Seconds between announcements.
-    fragment_bytes : int
-        Larger samples are sent in fragments of this size.
-    bytes_per_second : float
-        How much is sent at most, so that receivers keep up; short bursts pass.
-    on_event : callable or None
-        Called with every event but arrived samples.
+    * `domain`: the domain, from 0 to 232.
+    * `interface`: an interface or its IPv4 address; `None` for the one that multicast goes to. All
+      traffic stays on it, so ``"lo"`` stays on the host.
+    * `name`: name of the participant, which tools show.
+    * `user_data`: what it announces in addition.
+    * `peers`: IPv4 addresses of hosts that multicast does not reach. Without multicast, and on the
+      loopback interface, which may have none, this host is one of them.
+    * `multicast`: whether it announces itself by multicast. Announcements of others are received
+      anyway.
+    * `lease`: seconds after which peers take this participant for gone if it is silent.
+    * `period`: seconds between announcements.
+    * `fragment_bytes`: larger samples are sent in fragments of this size.
+    * `bytes_per_second`: how much is sent at most, so that receivers keep up; short bursts pass.
+    * `on_event`: called with every event but arrived samples.
 
-    Raises
-    ------
-    TransportError
-        The interface has no address, or sockets cannot be opened.
-    ValueError
-        The domain is out of range, or the name or the user data is too long for peers.
+    Raises `TransportError`: the interface has no address, or sockets cannot be opened. Raises
+    `ValueError`: the domain is out of range, or the name or the user data is too long for peers.
     """
 
     def __init__(
@@ -236,23 +217,14 @@ class Participant:
     ) -> DataWriter:
         """Create a writer.
 
-        Parameters
-        ----------
-        topic, type_name : str
-            Names on the wire; those of ROS 2 are in :mod:`firm_hdl.rtps.ros.names`.
-        qos : Qos
-            Policies. By default, the writer is reliable and volatile, and keeps 10 samples.
-        user_data : bytes
-            What is announced in addition.
-        on_match, on_incompatible : callables
-            See :class:`firm_hdl.rtps.endpoints.Endpoint`.
+        * `topic`, `type_name`: names on the wire; those of ROS 2 are in
+          :mod:`firm_hdl.rtps.ros.names`.
+        * `qos`: policies. By default, the writer is reliable and volatile, and keeps 10 samples.
+        * `user_data`: what is announced in addition.
+        * `on_match`, `on_incompatible`: see :class:`firm_hdl.rtps.endpoints.Endpoint`.
 
-        Raises
-        ------
-        ClosedError
-            The participant is closed.
-        TypeError, ValueError
-            A parameter is none of the above, or a name has more than 256 bytes.
+        Raises `ClosedError`: the participant is closed. Raises `TypeError` or `ValueError`: a
+        parameter is none of the above, or a name has more than 256 bytes.
         """
         qos = _checked(topic, type_name, qos, user_data)
         with self._lock:
@@ -343,15 +315,9 @@ class Participant:
     def wait_until(self, condition: Callable[[], bool], timeout: float) -> bool:
         """Wait for a condition that what comes from peers makes true.
 
-        Returns
-        -------
-        bool
-            Whether it is true; `False` after `timeout` seconds.
+        Returns: whether it is true; `False` after `timeout` seconds.
 
-        Raises
-        ------
-        RuntimeError
-            The caller is a callback.
+        Raises `RuntimeError`: the caller is a callback.
         """
         if self._in_callback():
             raise RuntimeError("a callback cannot wait for what comes after it")
@@ -447,10 +413,7 @@ class Participant:
     def _poll(self, sleep: float) -> float:
         """Receive what comes within `sleep` seconds, and do what is due.
 
-        Returns
-        -------
-        float
-            Seconds until something is due again.
+        Returns: seconds until something is due again.
         """
         for key, _ in self._selector.select(sleep):
             assert isinstance(key.fileobj, socket.socket)

@@ -46,36 +46,23 @@ class Qos:
 
     Attributes
     ----------
-    reliability : Reliability
-        A reliable reader does not fit a best-effort writer.
-    durability : Durability
-        Our endpoints are volatile or transient-local.
-    depth : int
-        How many samples a writer keeps for readers that miss them (KEEP_LAST), the newest. 0 keeps
-        all that a reliable reader has not acknowledged (KEEP_ALL).
-    max_samples : int
-        Limit of what a writer keeps if the depth is 0 (RESOURCE_LIMITS).
     deadline, lease : float
         Seconds; of the policies DEADLINE and LIVELINESS. Ours are infinite, as in ROS 2 by default.
-    liveliness : int
-        Kind: 0 automatic, 1 manual by participant, 2 manual by topic.
-    exclusive : bool
-        Kind of ownership.
-    partitions : tuple of str
-        Names of partitions; none is the partition without a name.
-    representations : tuple of int
-        Data representations that a reader accepts, or that a writer uses. None is XCDR version 1.
     """
 
+    # A reliable reader does not fit a best-effort writer.
     reliability: Reliability = Reliability.RELIABLE
-    durability: Durability = Durability.VOLATILE
+    durability: Durability = Durability.VOLATILE  # Our endpoints are volatile or transient-local.
+    # How many samples a writer keeps for readers that miss them (KEEP_LAST), the newest. 0 keeps
+    # all that a reliable reader has not acknowledged (KEEP_ALL).
     depth: int = 10
-    max_samples: int = 5000
+    max_samples: int = 5000  # Limit of what a writer keeps if the depth is 0 (RESOURCE_LIMITS).
     deadline: float = INFINITE
-    liveliness: int = 0
+    liveliness: int = 0  # Kind: 0 automatic, 1 manual by participant, 2 manual by topic.
     lease: float = INFINITE
-    exclusive: bool = False
-    partitions: tuple[str, ...] = ()
+    exclusive: bool = False  # Kind of ownership.
+    partitions: tuple[str, ...] = ()  # Names of partitions; none is the partition without a name.
+    # Data representations that a reader accepts, or that a writer uses. None is XCDR version 1.
     representations: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:

@@ -29,16 +29,10 @@ class TransportError(Exception):
 def address_of(interface: str | None) -> str:
     """Return the IPv4 address of an interface.
 
-    Parameters
-    ----------
-    interface : str or None
-        The name of an interface, such as ``"eth0"``; an IPv4 address, which is returned; or `None`
-        for the interface that multicast goes to by default, or else the loopback interface.
+    * `interface`: the name of an interface, such as ``"eth0"``; an IPv4 address, which is returned;
+      or `None` for the interface that multicast goes to by default, or else the loopback interface.
 
-    Raises
-    ------
-    TransportError
-        There is no such interface, or it has no IPv4 address.
+    Raises `TransportError`: there is no such interface, or it has no IPv4 address.
     """
     if interface is None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
@@ -69,30 +63,18 @@ def address_of(interface: str | None) -> str:
 class Transport:
     """The sockets of a participant.
 
-    Parameters
-    ----------
-    domain : int
-        The domain, from 0 to 232, which the ports follow from.
-    host : str
-        IPv4 address of the interface.
+    * `domain`: the domain, from 0 to 232, which the ports follow from.
+    * `host`: IPv4 address of the interface.
 
-    Attributes
-    ----------
-    participant : int
-        The number of the participant on this host: the lowest one whose ports are free.
-    discovery, user : Address
-        Where this participant is reached.
-
-    Raises
-    ------
-    TransportError
-        The address is not one of this host, or no ports are free.
+    Raises `TransportError`: the address is not one of this host, or no ports are free.
     """
 
     def __init__(self, domain: int, host: str):
         self.host = host
+        # The number of the participant on this host: the lowest one whose ports are free.
         self.participant, self._unicast = _bind_unicast(domain, host)
         ports = Ports.of(domain, self.participant)
+        # Where this participant is reached.
         self.discovery = Address(host, ports.discovery)
         self.user = Address(host, ports.user)
         self.group = Address(MULTICAST_GROUP, ports.discovery_multicast)

@@ -152,24 +152,12 @@ def _reads(packet: Packet) -> list[tuple[int, int, int]]:
 
 @dataclass(frozen=True, slots=True)
 class _Write:
-    """A step of a serializer, with positions in beats of the packet.
+    """A step of a serializer, with positions in beats of the packet."""
 
-    Attributes
-    ----------
-    length : int or None
-        Index of the leaf of the step's length.
-    full : int
-        Number of beats that can be sent after the step.
-    next : int
-        Beat in which the next step starts; after the last step, the next packet.
-    max_beats : int
-        The circuit's upper bound of the beats from the start of the step to `next`.
-    """
-
-    length: int | None
-    full: int
-    next: int
-    max_beats: int
+    length: int | None  # Index of the leaf of the step's length.
+    full: int  # Number of beats that can be sent after the step.
+    next: int  # Beat in which the next step starts; after the last step, the next packet.
+    max_beats: int  # The circuit's upper bound of the beats from the start of the step to `next`.
 
 
 def serializer_cycles(packets: Sequence[Packet]) -> list[int]:

@@ -33,43 +33,24 @@ MAX_TRANSFERS = 1 << 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cost:
-    """Size and cycles of one packet when it is repeated back to back.
-
-    Attributes
-    ----------
-    bytes, beats, steps : int
-    cycles : int
-        Cycles from one packet to the next.
-    """
+    """Size and cycles of one packet when it is repeated back to back."""
 
     bytes: int
     beats: int
     steps: int
-    cycles: int
+    cycles: int  # Cycles from one packet to the next.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timing:
-    """Figures of a plan.
-
-    Attributes
-    ----------
-    bus_bytes : int
-    steps : int
-        Number of steps of the plan; each takes one cycle, or one cycle per bus word of a run.
-    shortest : Cost
-        Cost of the packet with every length 0.
-    hardest : Cost
-        Cost of the packet with the most cycles per byte among those tried.
-    recovery : Recovery
-        How long a deserializer is busy with bad packets and with long ones.
-    """
+    """Figures of a plan."""
 
     bus_bytes: int
+    # Number of steps of the plan; each takes one cycle, or one cycle per bus word of a run.
     steps: int
-    shortest: Cost
-    hardest: Cost
-    recovery: Recovery
+    shortest: Cost  # Cost of the packet with every length 0.
+    hardest: Cost  # Cost of the packet with the most cycles per byte among those tried.
+    recovery: Recovery  # How long a deserializer is busy with bad packets and with long ones.
 
 
 def timing(plan: Plan) -> Timing:
@@ -104,19 +85,11 @@ class _TooLongError(Exception):
 def _cost(plan: Plan, elements: int, items: int, most: int | None = None) -> Cost:
     """Compute the cost of a packet by the lengths of its sequences.
 
-    Parameters
-    ----------
-    elements : int
-        Length of each sequence of messages.
-    items : int
-        Length of each string and sequence of primitives.
-    most : int or None
-        Largest number of transfers of the packet.
+    * `elements`: length of each sequence of messages.
+    * `items`: length of each string and sequence of primitives.
+    * `most`: largest number of transfers of the packet.
 
-    Raises
-    ------
-    _TooLongError
-        If the packet has more than `most` transfers.
+    Raises `_TooLongError` if the packet has more than `most` transfers.
     """
     left = most
 

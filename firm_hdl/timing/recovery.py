@@ -49,53 +49,33 @@ class Recovery:
     """How long a deserializer is busy with a bad packet, and with a good one, in cycles.
 
     Consumers take all outputs at once, and the packet's beats have come.
-
-    Attributes
-    ----------
-    cycles : int
-        Upper bound from the cycle in which the step with the error could be executed to the last
-        step of the packet. The next packet follows, and the status is valid a latency later.
-    longest_packet : int
-        Cycles of a legal packet of `max_message_bytes`: the one that takes longest among packets
-        with many shortest elements, or items, in one place.
     """
 
+    # Upper bound from the cycle in which the step with the error could be executed to the last step
+    # of the packet. The next packet follows, and the status is valid a latency later.
     cycles: int
+    # Cycles of a legal packet of `max_message_bytes`: the one that takes longest among packets with
+    # many shortest elements, or items, in one place.
     longest_packet: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Level:
-    """A sequence that may be open when an error is found.
-
-    Attributes
-    ----------
-    item : Run or Loop
-    count : Length
-    steps : Fraction
-        Steps of an element whose lengths are 0, or of an item.
-    offset : int
-        The offset behind the length, if the sequences around have one element each, and all other
-        lengths are 0. It counts from the end of the header.
-    after : tuple of _Tail
-        What follows the sequence in the packet.
-    """
+    """A sequence that may be open when an error is found."""
 
     item: Run | Loop
     count: Length
-    steps: Fraction
+    steps: Fraction  # Steps of an element whose lengths are 0, or of an item.
+    # The offset behind the length, if the sequences around have one element each, and all other
+    # lengths are 0. It counts from the end of the header.
     offset: int
-    after: tuple[_Tail, ...]
+    after: tuple[_Tail, ...]  # What follows the sequence in the packet.
 
 
 def recovery(plan: Plan, shortest_cycles: int) -> Recovery:
     """Compute how long a deserializer is busy with bad packets and with long ones.
 
-    Parameters
-    ----------
-    plan : Plan
-    shortest_cycles : int
-        Cycles of the shortest packet.
+    * `shortest_cycles`: cycles of the shortest packet.
     """
     empty = _Empty(plan)
     chains = list(empty.chains(plan.items, -plan.header_bytes, (), ()))
@@ -183,14 +163,8 @@ class _Empty:
     ) -> Iterator[tuple[_Level, ...]]:
         """Yield each sequence in items after the sequences around it, outermost first.
 
-        Parameters
-        ----------
-        items : tuple of Item
-        offset : int
-            Where the items start.
-        around : tuple of _Level
-        after : tuple of _Tail
-            What follows the items.
+        * `offset`: where the items start.
+        * `after`: what follows the items.
         """
         for place, item in enumerate(items, 1):
             rest = (_Tail(items, place), *after)

@@ -85,19 +85,13 @@ def is_foldable(cell: Cell, width: int) -> bool:
 
 
 class Values(expr.Values):
-    """Writes the values of one module.
-
-    Attributes
-    ----------
-    reads : dict of str to Declared
-        The signals that were read, by name.
-    """
+    """Writes the values of one module."""
 
     def __init__(
         self, declared: Mapping[str, Declared], folded: Mapping[str, Cell], width: Mapping[str, int]
     ) -> None:
         super().__init__(declared, folded, width)
-        self.reads: dict[str, Declared] = {}
+        self.reads: dict[str, Declared] = {}  # The signals that were read, by name.
 
     def edge(self, cell: Cell) -> str:
         """Write the clock edge of a cell."""

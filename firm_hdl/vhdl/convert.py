@@ -111,21 +111,11 @@ def convert(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Netlist:
-    """A design with the names of its modules and their ports, which are the same in all languages.
+    """A design with the names of its modules and ports, which are the same in all languages."""
 
-    Attributes
-    ----------
-    design : Design
-        Simplified.
-    entities : mapping of str to str
-        Identifiers of all modules.
-    port_names : mapping
-        Identifiers of ports, by module and wire.
-    """
-
-    design: Design
-    entities: Mapping[str, str]
-    port_names: Mapping[str, dict[str, str]]
+    design: Design  # Simplified.
+    entities: Mapping[str, str]  # Identifiers of all modules.
+    port_names: Mapping[str, dict[str, str]]  # Identifiers of ports, by module and wire.
 
     @classmethod
     def of(cls, design: Any, *, name: str, ports: Any, platform: Any) -> Netlist:

@@ -68,48 +68,26 @@ class Port:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Signal:
-    """A signal of an architecture.
+    """A signal of an architecture."""
 
-    Attributes
-    ----------
-    wire : str
-        The wire of the module that has this signal.
-    declared : Declared
-    role : "register", "logic" or "alias"
-        A register has an initial value; an alias only gives a value another name.
-    """
-
-    wire: str
+    wire: str  # The wire of the module that has this signal.
     declared: Declared
-    role: Role
+    role: Role  # A register has an initial value; an alias only gives a value another name.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Names:
-    """All declarations of a module.
-
-    Attributes
-    ----------
-    ports : tuple of Port
-    signals : tuple of Signal
-        Signals of the architecture, in order.
-    declared : dict of str to Declared
-        The signal or port of each wire that has a driver, and of each alias.
-    memories, labels : dict of str to str
-        Identifiers of memories and instances.
-    scope : Scope
-        Scope of the architecture, for further names.
-    remarks : dict of str to str
-        Comments on generated wires.
-    """
+    """All declarations of a module."""
 
     ports: tuple[Port, ...]
-    signals: tuple[Signal, ...]
+    signals: tuple[Signal, ...]  # Signals of the architecture, in order.
+    # The signal or port of each wire that has a driver, and of each alias.
     declared: dict[str, Declared]
+    # Identifiers of memories and instances.
     memories: dict[str, str]
     labels: dict[str, str]
-    scope: Scope
-    remarks: dict[str, str]
+    scope: Scope  # Scope of the architecture, for further names.
+    remarks: dict[str, str]  # Comments on generated wires.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,14 +120,9 @@ def declare(
 ) -> Names:
     """Choose the declarations of a module.
 
-    Parameters
-    ----------
-    port_names : dict of str to str
-        Identifiers of the ports by wire.
-    child_names : mapping
-        Identifiers of the ports of all modules, by module.
-    vectors : bool
-        Whether ports are `std_logic_vector`.
+    * `port_names`: identifiers of the ports by wire.
+    * `child_names`: identifiers of the ports of all modules, by module.
+    * `vectors`: whether ports are `std_logic_vector`.
     """
     fixed = fixed_names(graph.module, graph.modules)
     scope = Scope([entity, "rtl", *port_names.values(), *fixed], AMS)
@@ -186,10 +159,7 @@ def declare(
 def fixed_names(module: Module, modules: Collection[str]) -> set[str]:
     """Return the identifiers that nothing else in the module may have: tools know them.
 
-    Parameters
-    ----------
-    modules : collection of str
-        Names of all modules of the design.
+    * `modules`: names of all modules of the design.
     """
     attributes = {name for wire in module.wires.values() for name in attributes_of(wire)}
     # An extended identifier differs from all basic ones.
@@ -386,10 +356,7 @@ def _next_names(graph: Graph) -> tuple[dict[str, str], dict[str, str]]:
 def _part_of_results(graph: Graph, named: Mapping[str, str]) -> dict[str, str]:
     """Name the other generated wires after the one signal of whose value they are a part.
 
-    Parameters
-    ----------
-    named : mapping of str to str
-        Names of generated wires, which have one already.
+    * `named`: names of generated wires, which have one already.
     """
     readers: dict[str, set[str]] = defaultdict(set)
 

@@ -61,14 +61,9 @@ class Values:
 
     `choice` names a value of a signal with an enumeration, and is empty for any other value.
 
-    Parameters
-    ----------
-    declared : mapping of str to Declared
-        Signals and ports by wire.
-    folded : mapping of str to Cell
-        Wires that are written as the expression that drives them.
-    width : mapping of str to int
-        Bits of each wire.
+    * `declared`: signals and ports by wire.
+    * `folded`: wires that are written as the expression that drives them.
+    * `width`: bits of each wire.
     """
 
     def __init__(
@@ -124,11 +119,8 @@ class Values:
     def unsigned(self, spec: Spec, width: int | None = None, *, target: bool = False) -> Expression:
         """Write a value as `unsigned`, zero-extended or cut to `width` bits.
 
-        Parameters
-        ----------
-        target : bool
-            Whether the context gives the type, as in an assignment to a signal. If so, a
-            concatenation needs no type qualification.
+        * `target`: whether the context gives the type, as in an assignment to a signal. If so, a
+          concatenation needs no type qualification.
         """
         natural = spec_width(spec)
         if width is None:

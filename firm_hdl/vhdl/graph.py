@@ -40,54 +40,31 @@ Connection: TypeAlias = "tuple[Spec, Spec]"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Graph:
-    """Drivers, readers, widths and folding of one module.
-
-    Attributes
-    ----------
-    module : Module
-    modules : mapping of str to Module
-        All modules of the design.
-    cells : tuple of Cell
-    processes : tuple of Process
-        All processes except those in `next_state`.
-    width : mapping of str to int
-        Declared bits of each wire; for generated wires, the bits that are read.
-    drives : tuple of Connection
-        Connections that drive a wire.
-    aliases : tuple of Connection
-        Connections that only give a value another name, and that tools are to keep.
-    copy_of : mapping of str to str
-        By wire: the signal of the design that was no more than a copy of it.
-    fields : tuple of Connection
-        Aliases that are fields of a signal, which nothing needs if the signal has a name.
-    name_of : mapping of str to str
-        Generated wires that take over the name of a signal or port with the same value.
-    register_of : mapping of str to Cell
-        Flip-flops by the wire that they drive.
-    next_state : mapping of str to Process
-        By register wire: the process that computes its next value and nothing else.
-    cell_uses : tuple of tuples of Use
-        What each of the cells reads.
-    process_uses : mapping of str to tuple of Use
-        What a process reads, by the wire that it drives.
-    folded : mapping of str to Cell
-        Generated wires without a signal: their expression is written where they are read.
-    """
+    """Drivers, readers, widths and folding of one module."""
 
     module: Module
-    modules: Mapping[str, Module]
+    modules: Mapping[str, Module]  # All modules of the design.
     cells: tuple[Cell, ...]
-    processes: tuple[Process, ...]
+    processes: tuple[Process, ...]  # All processes except those in `next_state`.
+    # Declared bits of each wire; for generated wires, the bits that are read.
     width: Mapping[str, int]
-    drives: tuple[Connection, ...] = ()
+    drives: tuple[Connection, ...] = ()  # Connections that drive a wire.
+    # Connections that only give a value another name, and that tools are to keep.
     aliases: tuple[Connection, ...] = ()
+    # Aliases that are fields of a signal, which nothing needs if the signal has a name.
     fields: tuple[Connection, ...] = ()
+    # By wire: the signal of the design that was no more than a copy of it.
     copy_of: Mapping[str, str] = field(default_factory=dict)
+    # Generated wires that take over the name of a signal or port with the same value.
     name_of: Mapping[str, str] = field(default_factory=dict)
+    # Flip-flops by the wire that they drive.
     register_of: Mapping[str, Cell] = field(default_factory=dict)
+    # By register wire: the process that computes its next value and nothing else.
     next_state: Mapping[str, Process] = field(default_factory=dict)
-    cell_uses: tuple[tuple[Use, ...], ...] = ()
+    cell_uses: tuple[tuple[Use, ...], ...] = ()  # What each of the cells reads.
+    # What a process reads, by the wire that it drives.
     process_uses: Mapping[str, tuple[Use, ...]] = field(default_factory=dict)
+    # Generated wires without a signal: their expression is written where they are read.
     folded: Mapping[str, Cell] = field(default_factory=dict)
 
     def target(self, process: Process) -> str:
@@ -168,13 +145,9 @@ def graph_of(
 ) -> Graph:
     """Build the graph of a module.
 
-    Parameters
-    ----------
-    modules : mapping of str to Module
-        All modules of the design, by name.
-    is_foldable : callable
-        Whether the language can write the operator in an expression, given the bits of its result
-        that are read.
+    * `modules`: all modules of the design, by name.
+    * `is_foldable`: whether the language can write the operator in an expression, given the bits of
+      its result that are read.
     """
     graph: Graph | None = module.memo.get(graph_of)
     if graph is None or graph.modules is not modules:

@@ -40,10 +40,7 @@ def instance(
 def component_names(module: Module, modules: Collection[str]) -> set[str]:
     """Return the identifiers of foreign components, which nothing else in the module may have.
 
-    Parameters
-    ----------
-    modules : collection of str
-        Names of all modules of the design.
+    * `modules`: names of all modules of the design.
     """
     cells = [item for item in module.items if isinstance(item, Cell)]
     kinds = {cell.kind for cell in cells if not cell.kind.startswith("$")}

@@ -28,16 +28,9 @@ def memory_id(cell: Cell) -> str:
 class MemoryText:
     """Writes one memory.
 
-    Parameters
-    ----------
-    memory : Memory
-    name : str
-        Identifier of the signal; the name of its type is derived from it.
-    ports : sequence of Cell
-        Cells of the memory's ports and contents.
-    values : Values
-    targets : mapping of str to Declared
-        Signals that read ports drive.
+    * `name`: identifier of the signal; the name of its type is derived from it.
+    * `ports`: cells of the memory's ports and contents.
+    * `targets`: signals that read ports drive.
     """
 
     def __init__(

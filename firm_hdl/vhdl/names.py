@@ -79,12 +79,8 @@ def legal(name: str) -> str:
 class Scope:
     """The identifiers of one declarative region.
 
-    Parameters
-    ----------
-    reserved : iterable of str
-        Identifiers that are taken already.
-    avoided : collection of str
-        Legal identifiers that this scope does not give to any name, in lower case.
+    * `reserved`: identifiers that are taken already.
+    * `avoided`: legal identifiers that this scope does not give to any name, in lower case.
     """
 
     def __init__(self, reserved: Iterable[str], avoided: Collection[str] = ()) -> None:

@@ -125,12 +125,8 @@ def _is_plain(switch: Switch) -> bool:
 class Statements:
     """Writes statements.
 
-    Parameters
-    ----------
-    values : Values
-        Writer of the values that are read.
-    targets : mapping of str to Declared
-        Signals by the wire that is assigned; for a next state, the register.
+    * `values`: writer of the values that are read.
+    * `targets`: signals by the wire that is assigned; for a next state, the register.
     """
 
     true = "true"

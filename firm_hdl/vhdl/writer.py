@@ -33,16 +33,9 @@ TITLES: Mapping[Role, str] = {
 class Writer(ABC):
     """Writes one module.
 
-    Parameters
-    ----------
-    module : Module
-    entities : mapping of str to str
-        Identifiers of all modules.
-    port_names : mapping
-        Identifiers of ports, by module and wire.
-    modules : mapping of str to Module
-    vectors : bool
-        Whether the ports of this module are `std_logic_vector`.
+    * `entities`: identifiers of all modules.
+    * `port_names`: identifiers of ports, by module and wire.
+    * `vectors`: whether the ports of this module are `std_logic_vector`.
     """
 
     mark: ClassVar[str]

@@ -71,11 +71,7 @@ class Alignment:
 
         Strings and sequences have a length of 0 and nothing else; CDR strings have no NUL.
 
-        Parameters
-        ----------
-        kind : FieldType
-        start : int
-            Offset where the value may start.
+        * `start`: offset where the value may start.
         """
         key = (kind, start % rs.MODULUS)
         if key not in self._shortest:

@@ -49,18 +49,10 @@ Path: TypeAlias = "tuple[str, ...]"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gap:
-    """Padding before a value that starts at a multiple of `align` bytes.
+    """Padding before a value that starts at a multiple of `align` bytes."""
 
-    Attributes
-    ----------
-    align : int
-        1, 2, 4 or 8.
-    bytes : int or None
-        Size of the padding if it is the same in every packet, else `None`.
-    """
-
-    align: int
-    bytes: int | None
+    align: int  # 1, 2, 4 or 8.
+    bytes: int | None  # Size of the padding if it is the same in every packet, else `None`.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,18 +73,10 @@ class Trigger:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LengthField:
-    """The length of a string or a sequence: a number on the wire, before the items.
+    """The length of a string or a sequence: a number on the wire, before the items."""
 
-    Attributes
-    ----------
-    gap : Gap
-        Padding before the number.
-    bound : int or None
-        Largest number of items, if the type bounds it.
-    """
-
-    gap: Gap
-    bound: int | None
+    gap: Gap  # Padding before the number.
+    bound: int | None  # Largest number of items, if the type bounds it.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,43 +91,24 @@ Length: TypeAlias = "LengthField | ConstantLength"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunNode:
-    """Primitives in a row: a string, or an array or a sequence of primitives.
-
-    Attributes
-    ----------
-    length : LengthField or ConstantLength
-    item_gap : Gap
-        Padding before the first item. An empty run does not have it (CDR).
-    terminated : bool
-        Whether a NUL follows the items. The length on the wire counts the NUL.
-    """
+    """Primitives in a row: a string, or an array or a sequence of primitives."""
 
     path: Path
     length: Length
-    item_gap: Gap
+    item_gap: Gap  # Padding before the first item. An empty run does not have it (CDR).
     item: Primitive
-    terminated: bool
+    terminated: bool  # Whether a NUL follows the items. The length on the wire counts the NUL.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopNode:
-    """Elements in a row that are not primitives.
-
-    Attributes
-    ----------
-    length : LengthField or ConstantLength
-    body : tuple of Node
-        One element, laid out for all offsets where any element may start.
-    min_body_bytes : int
-        Lower bound of the size of an element in bytes, without padding.
-    repeated_bytes : int
-        Size of the shortest element after another shortest one in bytes, with padding.
-    """
+    """Elements in a row that are not primitives."""
 
     path: Path
     length: Length
-    body: tuple[Node, ...]
-    min_body_bytes: int
+    body: tuple[Node, ...]  # One element, laid out for all offsets where any element may start.
+    min_body_bytes: int  # Lower bound of the size of an element in bytes, without padding.
+    # Size of the shortest element after another shortest one in bytes, with padding.
     repeated_bytes: int
 
 
@@ -152,33 +117,21 @@ Node: TypeAlias = "Scalar | Trigger | RunNode | LoopNode"
 
 @dataclass(frozen=True, kw_only=True)
 class Layout:
-    """A message type on a wire.
-
-    Attributes
-    ----------
-    nodes : tuple of Node
-        Everything after the encapsulation header, with nested messages written out.
-    min_bytes : int
-        Lower bound of the size of a packet in bytes, header included.
-    """
+    """A message type on a wire."""
 
     message: Message
     rules: WireRules
+    # Everything after the encapsulation header, with nested messages written out.
     nodes: tuple[Node, ...]
-    min_bytes: int
+    min_bytes: int  # Lower bound of the size of a packet in bytes, header included.
 
 
 def lay_out(message: Message, wire: Wire | None = None) -> Layout:
     """Lay a message out on a wire (by default that of its dialect).
 
-    Raises
-    ------
-    DefinitionError
-        If a field of the message, or of a message in it, has no wire format (`refusals`).
-    ValueError
-        If `wire` is not the name of a wire format.
-    TypeError
-        If `message` is not a Message.
+    Raises `DefinitionError` if a field of the message, or of a message in it, has no wire format
+    (`refusals`). Raises `ValueError` if `wire` is not the name of a wire format. Raises `TypeError`
+    if `message` is not a Message.
     """
     if not isinstance(message, Message):
         raise TypeError(f"Message must be a Message, as load_message gives it, not {message!r}")

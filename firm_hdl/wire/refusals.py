@@ -27,12 +27,9 @@ MAX_LEVELS = 32
 def refusals(message: Message) -> list[Diagnostic]:
     """Find why a message cannot be laid out on any wire: its fields or its size.
 
-    Returns
-    -------
-    list of Diagnostic
-        One for each field without a wire format, in the message and in all messages in it. The
-        types are walked depth first, and the span is the field's name. If there is no such field,
-        at most one for the size, without a span. Empty if the message can be laid out.
+    Returns: one for each field without a wire format, in the message and in all messages in it. The
+    types are walked depth first, and the span is the field's name. If there is no such field, at
+    most one for the size, without a span. Empty if the message can be laid out.
     """
     return _without_bytes(message) or too_large(message)
 
@@ -40,10 +37,7 @@ def refusals(message: Message) -> list[Diagnostic]:
 def too_large(message: Message) -> list[Diagnostic]:
     """Check whether a message has too many levels or fields to be laid out.
 
-    Returns
-    -------
-    list of Diagnostic
-        At most one, with the count and the limit.
+    Returns: at most one, with the count and the limit.
     """
     if message.depth > MAX_LEVELS:
         text = f"{message.depth} levels of messages, and at most {MAX_LEVELS}"

@@ -50,12 +50,8 @@ def write(
 ) -> Output:
     """Write the datasheet.
 
-    Parameters
-    ----------
-    manifest : mapping
-        The sections of the manifest.
-    instances : mapping
-        Instances of the converters by the name of the language.
+    * `manifest`: the sections of the manifest.
+    * `instances`: instances of the converters by the name of the language.
     """
     message, plan, inputs = converters.message, converters.plan, converters.inputs
     metrics = metrics_of(message, plan.wire)

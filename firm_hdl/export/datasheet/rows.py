@@ -28,50 +28,27 @@ _LAST_ROWS = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cell:
-    """Bytes in a row.
+    """Bytes in a row."""
 
-    Attributes
-    ----------
-    x, width : float
-        From the left edge of the cells.
-    text : str
-        What the cell shows, as far as there is room.
-    title : str
-        What the cell is.
-    dashed : bool
-        Whether the number of bytes varies.
-    """
-
+    # From the left edge of the cells.
     x: float
     width: float
     kind: Kind
-    text: str = ""
-    title: str = ""
-    dashed: bool = False
+    text: str = ""  # What the cell shows, as far as there is room.
+    title: str = ""  # What the cell is.
+    dashed: bool = False  # Whether the number of bytes varies.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """A row: cells with a label, or, without cells, a box with the label.
+    """A row: cells with a label, or, without cells, a box with the label."""
 
-    Attributes
-    ----------
-    depth : int
-        Number of loops around the row.
-    place : str
-        What stands left of the row, such as an offset.
-    kind : Kind
-        Of the box.
-    joined : bool
-        Whether the row continues the one above.
-    """
-
-    depth: int = 0
-    place: str = ""
+    depth: int = 0  # Number of loops around the row.
+    place: str = ""  # What stands left of the row, such as an offset.
     label: str = ""
     cells: tuple[Cell, ...] = ()
-    kind: Kind = "data"
-    joined: bool = False
+    kind: Kind = "data"  # Of the box.
+    joined: bool = False  # Whether the row continues the one above.
 
 
 def draw_rows(
@@ -79,14 +56,9 @@ def draw_rows(
 ) -> Figure:
     """Draw rows below each other.
 
-    Parameters
-    ----------
-    label : str
-        The text for screen readers.
-    heads : sequence of str
-        Texts above the cells, at equal distances.
-    width : float
-        Width of the cells.
+    * `label`: the text for screen readers.
+    * `heads`: texts above the cells, at equal distances.
+    * `width`: width of the cells.
     """
     figure = Figure(0, 0, label)
     y = 4.0

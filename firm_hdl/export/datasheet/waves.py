@@ -62,22 +62,12 @@ Cycles = Sequence[Mapping[str, tuple[int, int, int]]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wave:
-    """The waveforms of a converter.
-
-    Attributes
-    ----------
-    direction : Direction
-    packet : bytes
-    cycles : int
-        Cycles of the run.
-    figures : tuple of (str, Figure)
-        Each with the cycles that it shows.
-    """
+    """The waveforms of a converter."""
 
     direction: Direction
     packet: bytes
-    cycles: int
-    figures: tuple[tuple[str, Figure], ...]
+    cycles: int  # Cycles of the run.
+    figures: tuple[tuple[str, Figure], ...]  # Each with the cycles that it shows.
 
 
 def waves_of(
@@ -85,17 +75,10 @@ def waves_of(
 ) -> list[Wave]:
     """Simulate both converters.
 
-    Parameters
-    ----------
-    stalls : Stalls, mapping or None
-        Stalls of the streams of the deserializer; see :mod:`firm_hdl.sim.harness`.
-    columns : int
-        Cycles in a figure.
+    * `stalls`: stalls of the streams of the deserializer; see :mod:`firm_hdl.sim.harness`.
+    * `columns`: cycles in a figure.
 
-    Returns
-    -------
-    list of Wave
-        Empty if the shortest packet is long, or has many leaves.
+    Returns: empty if the shortest packet is long, or has many leaves.
     """
     shortest = metrics_of(message, plan.wire).min_bytes
     if shortest is None or shortest > MOST_BYTES or len(plan.leaves) > MOST_LEAVES:
@@ -156,10 +139,7 @@ class _Run:
 def sample_value(message: Message, items: int) -> dict[str, Any]:
     """Return a message with numbers that differ.
 
-    Parameters
-    ----------
-    items : int
-        Characters of strings, and items of sequences of primitives; others have one element.
+    * `items`: characters of strings, and items of sequences of primitives; others have one element.
     """
     return _sample_message(message, items, count(1))
 

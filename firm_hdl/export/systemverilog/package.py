@@ -39,16 +39,9 @@ def _taken(package: Package, plan: Plan) -> frozenset[str]:
 def shared_packages(plan: Plan, tree: Tree) -> dict[str, str]:
     """Write the packages that other messages' folders have, too, by file name.
 
-    Parameters
-    ----------
-    plan : Plan
-    tree : Tree
-        The structs of the message.
+    * `tree`: the structs of the message.
 
-    Returns
-    -------
-    dict of str to str
-        Texts in compile order.
+    Returns: texts in compile order.
     """
     packages = {
         TYPES_NAME: types_package(),

@@ -19,12 +19,8 @@ _STATUS = "m_axis_status"
 def wrapper(plan: Plan, tree: Tree, direction: Direction, *, name: str, core: str) -> str:
     """Write a module.
 
-    Parameters
-    ----------
-    name : str
-        Name of the module.
-    core : str
-        Name of the Verilog module inside.
+    * `name`: name of the module.
+    * `core`: name of the Verilog module inside.
     """
     head = remark(f"The {direction} of {plan.message} with structs. {core} has plain ports.", "")
     return "".join(
@@ -42,10 +38,7 @@ def wrapper(plan: Plan, tree: Tree, direction: Direction, *, name: str, core: st
 def instance(plan: Plan, tree: Tree, direction: Direction, *, name: str) -> str:
     """Write an instance of a module, and the variables that it needs.
 
-    Parameters
-    ----------
-    name : str
-        Name of the module.
+    * `name`: name of the module.
     """
     lines = _lines(plan, tree, direction)
     own, base = package_name(tree.package.name), tree.package.base.upper()

@@ -79,10 +79,7 @@ def converter_axis_ports(plan: Plan, direction: Direction) -> list[AxisPort]:
 def waivers(modules: Iterable[str]) -> str:
     """Write the waivers of some modules, each with its reason, for ``verilator --lint-only -Wall``.
 
-    Parameters
-    ----------
-    modules : iterable of str
-        Names of the modules. The file of a module is its name with ``.v``.
+    * `modules`: names of the modules. The file of a module is its name with ``.v``.
     """
     lines = [
         "// Warnings of Verilator that are harmless here, each with the reason. To lint:\n",

@@ -29,12 +29,8 @@ _ABOUT: dict[Direction, str] = {
 def template(direction: Direction, instance: str, *, header: str) -> str:
     """Write a file with an instance.
 
-    Parameters
-    ----------
-    instance : str
-        As :func:`instance` returns it.
-    header : str
-        Lines of the comment at the head of the file.
+    * `instance`: as :func:`instance` returns it.
+    * `header`: lines of the comment at the head of the file.
     """
     text = [
         *remark(header, ""),

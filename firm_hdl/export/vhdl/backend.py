@@ -115,10 +115,7 @@ class _Parts:
 def to_vhdl(converters: Converters) -> Output:
     """Write the VHDL of a message type, except the files of :mod:`firm_hdl.export.packaging`.
 
-    Returns
-    -------
-    Output
-        Texts by name in the VHDL folder, and the manifest's entry `vhdl`.
+    Returns: texts by name in the VHDL folder, and the manifest's entry `vhdl`.
     """
     name, plan = converters.name, converters.plan
     parts = _Parts(base=identifier(name).lower(), header=converters.header(name, "converters"))
@@ -258,9 +255,7 @@ def check_packages(folders: Mapping[Path, Converters]) -> None:
     Within a message, the second of two equal names gets a number. A design with both messages
     compiles each file name once, so a name must belong to the same type in all folders.
 
-    Raises
-    ------
-    BuildError
+    Raises `BuildError`.
     """
     owners: dict[Path, tuple[str, Path]] = {}
     for folder, converters in folders.items():

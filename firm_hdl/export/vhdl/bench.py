@@ -56,53 +56,29 @@ def packets_text(packets: Iterable[bytes], remark: str = "") -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Channel:
-    """A stream between the converters.
+    """A stream between the converters."""
 
-    Attributes
-    ----------
-    label : str
-        Name in the file of transfers.
-    rx, tx : mapping of str to str
-        Signals of the deserializer and of the serializer: ``data``, ``valid``, ``ready``, and for
-        items ``last``.
-    image : str
-        VHDL expression of the data as a string.
-    """
-
-    label: str
+    label: str  # Name in the file of transfers.
+    # Signals of the deserializer and of the serializer: `data`, `valid`, `ready`, and for items
+    # `last`.
     rx: Mapping[str, str]
     tx: Mapping[str, str]
-    image: str
+    image: str  # VHDL expression of the data as a string.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
-    """The converters as a bench connects them.
+    """The converters as a bench connects them."""
 
-    Attributes
-    ----------
-    uses : str
-        Use clauses.
-    declarations : str
-        Declarations of the architecture, such as signals.
-    instances : mapping of direction to str
-        The unit to instantiate.
-    message_ports : mapping of direction to mapping of str to str
-        Signals of the ports on the message side, by port.
-    channels : list of Channel
-    port_names : mapping of direction to mapping of str to str
-        Names of ports, where they differ from those of :func:`ports_of`.
-    bit_keep : bool
-        On a bus of one byte, ``tkeep`` is a bit instead of a vector.
-    """
-
-    uses: str
-    declarations: str
-    instances: Mapping[Direction, str]
+    uses: str  # Use clauses.
+    declarations: str  # Declarations of the architecture, such as signals.
+    instances: Mapping[Direction, str]  # The unit to instantiate.
+    # Signals of the ports on the message side, by port.
     message_ports: Mapping[Direction, Mapping[str, str]]
     channels: Sequence[Channel]
+    # Names of ports, where they differ from those of `ports_of`.
     port_names: Mapping[Direction, Mapping[str, str]] = field(default_factory=dict)
-    bit_keep: bool = False
+    bit_keep: bool = False  # On a bus of one byte, `tkeep` is a bit instead of a vector.
 
 
 # Names of the message's package are written in full, because constants in it may have the names of
@@ -241,16 +217,10 @@ def bench(
 ) -> str:
     """Write a test bench.
 
-    Parameters
-    ----------
-    top : str
-        Name of the entity.
-    what : str
-        Description of the converters, for the last line that the bench prints.
-    files : str
-        Suffix of the names of the files that the bench writes.
-    header : str
-        Lines of a comment at the head of the file.
+    * `top`: name of the entity.
+    * `what`: description of the converters, for the last line that the bench prints.
+    * `files`: suffix of the names of the files that the bench writes.
+    * `header`: lines of a comment at the head of the file.
     """
     title = f"Test bench of the converters of {what}. Simulation only."
     return render(
@@ -289,12 +259,8 @@ def _converter(view: View, direction: Direction, bus_bytes: int) -> tuple[str, s
 def run_script(files: Iterable[str], top: str) -> str:
     """Write the script that runs the benches in GHDL.
 
-    Parameters
-    ----------
-    files : iterable of str
-        Names of the files in compile order, in the folder of the script.
-    top : str
-        Entity of the bench that runs by default.
+    * `files`: names of the files in compile order, in the folder of the script.
+    * `top`: entity of the bench that runs by default.
     """
     return render(
         "vhdl/run_ghdl.sh", files=list(files), top=top, script=RUN_SCRIPT, stimuli=STIMULI

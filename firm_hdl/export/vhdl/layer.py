@@ -39,70 +39,38 @@ __all__ = ["RecordEntities", "UserLayer", "flat_package", "shared_packages", "us
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shared:
-    """A package that folders of other message types may also have, with the same text.
-
-    Attributes
-    ----------
-    name : str
-    needs : tuple of str
-        Shared packages that this package uses, except the package of primitives.
-    message : str
-        The message type that the package declares; empty for the package of the bus width.
-    """
+    """A package that folders of other message types may also have, with the same text."""
 
     name: str
+    # Shared packages that this package uses, except the package of primitives.
     needs: tuple[str, ...] = ()
+    # The message type that the package declares; empty for the package of the bus width.
     message: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordEntities:
-    """The entities that transfer the whole message as one record of values.
+    """The entities that transfer the whole message as one record of values."""
 
-    Attributes
-    ----------
-    values : ValueType
-        The record.
-    entities : mapping of direction to str
-    """
-
-    values: ValueType
+    values: ValueType  # The record.
     entities: Mapping[Direction, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UserLayer:
-    """The user's layer of a message type.
+    """The user's layer of a message type."""
 
-    Attributes
-    ----------
-    name : str
-        Prefix of the names of its entities.
-    package : str
-        Name of the package with the message's own records.
-    entities : mapping of direction to str
-        Entities with a record of streams.
-    record : RecordEntities or None
-        Entities with a record of values; `None` if the message has no record view.
-    tree : Tree
-    constants : dict of str to list of NamedConstant
-        Constants by package.
-    shared : tuple of Shared
-        Packages that other messages' folders have, too, in compile order.
-    packages : mapping of str to str
-        Texts of all packages by file name, in compile order, including the shared ones.
-    wrappers : mapping of str to str
-        Texts of the entities by file name; they compile after the packages and the cores.
-    """
-
-    name: str
-    package: str
-    entities: Mapping[Direction, str]
+    name: str  # Prefix of the names of its entities.
+    package: str  # Name of the package with the message's own records.
+    entities: Mapping[Direction, str]  # Entities with a record of streams.
+    # Entities with a record of values; `None` if the message has no record view.
     record: RecordEntities | None
     tree: Tree
-    constants: Mapping[str, list[NamedConstant]]
-    shared: tuple[Shared, ...]
+    constants: Mapping[str, list[NamedConstant]]  # Constants by package.
+    shared: tuple[Shared, ...]  # Packages that other messages' folders have, too, in compile order.
+    # Texts of all packages by file name, in compile order, including the shared ones.
     packages: Mapping[str, str]
+    # Texts of the entities by file name; they compile after the packages and the cores.
     wrappers: Mapping[str, str]
 
 
@@ -117,17 +85,11 @@ def user_layer(
 ) -> UserLayer:
     """Write the user's layer of a message type.
 
-    Parameters
-    ----------
-    name : str
-        A legal identifier; the entities are ``name_deserializer`` and ``name_serializer``, and the
-        package of their components ``name_components_pkg``.
-    cores : mapping of direction to Core
-        The entities with flat ports.
-    record_cores : mapping of direction to Core, or None
-        The entities of the record view; `None` if the message has none.
-    header : str
-        Lines of a comment at the head of every file that is not shared.
+    * `name`: a legal identifier; the entities are ``name_deserializer`` and ``name_serializer``,
+      and the package of their components ``name_components_pkg``.
+    * `cores`: the entities with flat ports.
+    * `record_cores`: the entities of the record view; `None` if the message has none.
+    * `header`: lines of a comment at the head of every file that is not shared.
     """
     entities = {direction: f"{name}_{direction}" for direction in DIRECTIONS}
     tree = tree_of(message, plan)
@@ -175,18 +137,10 @@ def _shared(plan: Plan, tree: Tree) -> tuple[Shared, ...]:
 def shared_packages(plan: Plan, tree: Tree, values: Mapping[str, ValueType]) -> dict[str, str]:
     """Write the packages that other messages' folders have, too, by file name.
 
-    Parameters
-    ----------
-    plan : Plan
-    tree : Tree
-        The records of the message.
-    values : mapping of str to ValueType
-        The records of values that :func:`firm_hdl.export.vhdl.values.values_of` found.
+    * `tree`: the records of the message.
+    * `values`: the records of values that :func:`firm_hdl.export.vhdl.values.values_of` found.
 
-    Returns
-    -------
-    dict of str to str
-        Texts in compile order.
+    Returns: texts in compile order.
     """
     texts = {TYPES_NAME: types_package(), bus_name(plan.bus_bytes): bus_package(plan.bus_bytes)}
     for each in tree.packages:

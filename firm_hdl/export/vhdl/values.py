@@ -24,46 +24,28 @@ __all__ = ["Member", "ValueType", "values_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Member:
-    """A member of a record.
+    """A member of a record."""
 
-    Attributes
-    ----------
-    name, type : str
-        Name and type in VHDL.
-    first, bits : int
-        Lowest bit in the record's vector, and number of bits.
-    to_slv, from_slv : str
-        Functions that convert the member to a vector and back; empty if the member is a vector.
-    source : Field or None
-        The definition's field; `None` in a message without fields.
-    """
-
+    # Name and type in VHDL.
     name: str
     type: str
+    # Lowest bit in the record's vector, and number of bits.
     first: int
     bits: int
+    # Functions that convert the member to a vector and back; empty if the member is a vector.
     to_slv: str
     from_slv: str
-    source: Field | None
+    source: Field | None  # The definition's field; `None` in a message without fields.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ValueType:
-    """A message type as a record.
+    """A message type as a record."""
 
-    Attributes
-    ----------
-    base : str
-        Stem of the names: the record is ``base_t``, its function ``to_base``, its size
-        ``BASE_BITS``; an array of records is ``bases_t``, and its function ``to_bases``.
-    package : str
-        The package that declares them.
-    bits : int
-    members : tuple of Member
-    """
-
+    # Stem of the names: the record is `base_t`, its function `to_base`, its size `BASE_BITS`; an
+    # array of records is `bases_t`, and its function `to_bases`.
     base: str
-    package: str
+    package: str  # The package that declares them.
     bits: int
     members: tuple[Member, ...]
 

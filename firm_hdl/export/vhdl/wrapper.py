@@ -48,17 +48,10 @@ Line = tuple[str, str, str]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Core:
-    """A circuit with plain ports.
-
-    Attributes
-    ----------
-    entity : str
-    names : mapping of str to str
-        Names of ports, where they differ from those of :func:`ports_of`.
-    """
+    """A circuit with plain ports."""
 
     entity: str
-    names: Mapping[str, str]
+    names: Mapping[str, str]  # Names of ports, where they differ from those of `ports_of`.
 
 
 def stream_lines(plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
@@ -122,16 +115,10 @@ def instance(
 ) -> str:
     """Write an instance of an entity, and the signals that it needs.
 
-    Parameters
-    ----------
-    label : str
-        The instance's name.
-    lines : list of Line
-        Ports of the entity.
-    packages : sequence of str
-        Packages with the types of the ports.
-    tied : str
-        A statement, without its semicolon, that ties off fields.
+    * `label`: the instance's name.
+    * `lines`: ports of the entity.
+    * `packages`: packages with the types of the ports.
+    * `tied`: a statement, without its semicolon, that ties off fields.
     """
     width = max(len(name) for name, _, _ in lines)
     signals = [
@@ -184,18 +171,11 @@ def entity_around(
 ) -> Iterator[str]:
     """Yield the text of an entity around a core.
 
-    Parameters
-    ----------
-    packages : iterable of str
-        Packages to use, besides that of primitives.
-    lines : list of Line
-        Ports of the entity.
-    parts : mapping of str to str
-        Actuals of the core's ports, by the names that `core` may change.
-    signals : list of pairs of str
-        Names and types of signals.
-    assignments : list of str
-        Lines of the architecture.
+    * `packages`: packages to use, besides that of primitives.
+    * `lines`: ports of the entity.
+    * `parts`: actuals of the core's ports, by the names that `core` may change.
+    * `signals`: names and types of signals.
+    * `assignments`: lines of the architecture.
     """
     width = max(len(core.names.get(port, port)) for port in parts)
     names = max((len(name) for name, _ in signals), default=0)
@@ -234,23 +214,9 @@ class Conversions:
 
     Some synthesis tools do not support a conversion in a port map.
 
-    Parameters
-    ----------
-    plan : Plan
-    tree : Tree
-        The records of the message.
-    direction : Direction
-    msg, rdy : str
-        Names of the records.
-    names : mapping of str to str
-        Names of signals, where they differ from those of ports.
-
-    Attributes
-    ----------
-    signals : list of pairs of str
-        Names and types.
-    assignments : list of str
-        Lines of an architecture.
+    * `tree`: the records of the message.
+    * `msg`, `rdy`: names of the records.
+    * `names`: names of signals, where they differ from those of ports.
     """
 
     def __init__(
@@ -266,8 +232,8 @@ class Conversions:
         self.plan, self.direction = plan, direction
         self.msg, self.rdy, self.names = msg, rdy, names or {}
         self.nodes = {node.leaf: node for node in tree.root.leaves()}
-        self.signals: list[tuple[str, str]] = []
-        self.assignments: list[str] = []
+        self.signals: list[tuple[str, str]] = []  # Names and types.
+        self.assignments: list[str] = []  # Lines of an architecture.
 
     def actual(self, port: Port) -> str:
         """Return what a port of the core is connected to; add a signal if it takes one."""

@@ -74,15 +74,9 @@ _DECLARED = re.compile(r"\b(?:struct|enum|union)\s+\w+\s*\Z")
 def explain(error: UnexpectedInput, text: str, accepts: Iterable[str]) -> tuple[int, int, str]:
     """Put a syntax error into words.
 
-    Parameters
-    ----------
-    accepts : iterable of str
-        Names of the terminals that are legal at this place.
+    * `accepts`: names of the terminals that are legal at this place.
 
-    Returns
-    -------
-    tuple of int, int and str
-        Start and end of the words that are wrong, as offsets in the text, and the message.
+    Returns: start and end of the words that are wrong, as offsets in the text, and the message.
     """
     start = place_of(error, len(text.rstrip(_BLANKS)))
     expected = frozenset(accepts)

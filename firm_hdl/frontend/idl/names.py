@@ -41,15 +41,9 @@ CONSTANTS = "_Constants"
 
 
 class Declared(NamedTuple):
-    """A type as written in one place: that of a typedef, or of a member of a struct.
+    """A type as written in one place: that of a typedef, or of a member of a struct."""
 
-    Attributes
-    ----------
-    path : tuple of str
-        The modules around it.
-    """
-
-    path: Path
+    path: Path  # The modules around it.
     type: TypeNode
     declarator: Declarator
     struct: str | None = None
@@ -131,20 +125,13 @@ def _source(path: str, include: Callable[[str], Source | None]) -> Source | None
 
 @dataclass(slots=True)
 class Names:
-    """All names that a file can use.
+    """All names that a file can use."""
 
-    Attributes
-    ----------
-    constants : dict of tuple of str to (Value or None)
-        By full name; `None` for a constant with an error, which has been reported.
-    aliases : dict of str to Declared
-        What typedefs declare, by last name.
-    enums, structs : dict of str to tuple of str
-        Full names, by last name.
-    """
-
+    # By full name; `None` for a constant with an error, which has been reported.
     constants: dict[Path, Value | None] = field(default_factory=dict)
+    # What typedefs declare, by last name.
     aliases: dict[str, Declared] = field(default_factory=dict)
+    # Full names, by last name.
     enums: dict[str, Path] = field(default_factory=dict)
     structs: dict[str, Path] = field(default_factory=dict)
     _by_last: dict[str, list[Path]] = field(default_factory=dict)
@@ -158,10 +145,7 @@ class Names:
     def add_types(self, file: FileSyntax) -> list[Diagnostic]:
         """Declare all types of a file.
 
-        Returns
-        -------
-        list of Diagnostic
-            For typedefs that give a name two meanings.
+        Returns: errors of typedefs that give a name two meanings.
         """
         wrong = []
         meanings: dict[str, str] = {}
@@ -184,17 +168,10 @@ class Names:
     def constant(self, name: ScopedName, path: Path, struct: str | None = None) -> Value:
         """Give the value of a constant.
 
-        Parameters
-        ----------
-        path : tuple of str
-            The modules around the reference.
-        struct : str or None
-            The struct around the reference.
+        * `path`: the modules around the reference.
+        * `struct`: the struct around the reference.
 
-        Raises
-        ------
-        UnknownNameError
-            If no constant has that name.
+        Raises `UnknownNameError` if no constant has that name.
         """
         full = self._find(name, path, struct)
         value = self.constants[full]

@@ -75,10 +75,7 @@ _LITERALS: dict[str, Any] = {
 def parse_file(source: Source) -> FileSyntax | Diagnostic:
     """Parse an IDL file.
 
-    Returns
-    -------
-    FileSyntax or Diagnostic
-        The tree, or the first syntax error.
+    Returns: the tree, or the first syntax error.
     """
     parser = _parser().parse_interactive(source.text)
     try:

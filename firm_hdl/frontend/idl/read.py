@@ -77,18 +77,12 @@ def read_idl(
 ) -> tuple[dict[str, MessageSyntax], list[Diagnostic]]:
     """Read an IDL file of a ROS 2 package.
 
-    Parameters
-    ----------
-    include : callable
-        Gives the text of an included file, by the path between the quotes or angle brackets.
-    folder : str
-        The folder of the file, as included paths name it, such as ``sensor_msgs/msg/``.
+    * `include`: gives the text of an included file, by the path between the quotes or angle
+      brackets.
+    * `folder`: the folder of the file, as included paths name it, such as ``sensor_msgs/msg/``.
 
-    Returns
-    -------
-    tuple of (dict of str to MessageSyntax) and list of Diagnostic
-        The structs by their names, such as ``Imu`` or ``SetBool_Request``, and the errors in the
-        order of the text. In the structs, typedefs are expanded and constants are evaluated.
+    Returns: the structs by their names, such as ``Imu`` or ``SetBool_Request``, and the errors in
+    the order of the text. In the structs, typedefs are expanded and constants are evaluated.
     """
     file = parse_file(source)
     if isinstance(file, Diagnostic):
@@ -380,10 +374,8 @@ def _default_of(
 ) -> ValueSyntax | ListSyntax | None:
     """Give the value of ``@default(value=...)``, converted to a type.
 
-    Raises
-    ------
-    IdlError
-        If there are two defaults, if the default has no value, or if it does not fit the type.
+    Raises `IdlError` if there are two defaults, if the default has no value, or if it does not fit
+    the type.
     """
     found = list(_named(annotations, "default"))
     if not found:

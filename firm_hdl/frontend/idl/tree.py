@@ -42,16 +42,10 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class ScopedName:
-    """A reference, such as ``sensor_msgs::msg::Imu``.
-
-    Attributes
-    ----------
-    is_absolute : bool
-        Whether the reference starts with ``::``.
-    """
+    """A reference, such as ``sensor_msgs::msg::Imu``."""
 
     parts: tuple[str, ...]
-    is_absolute: bool
+    is_absolute: bool  # Whether the reference starts with `::`.
     span: Span
 
     def __str__(self) -> str:
@@ -60,16 +54,10 @@ class ScopedName:
 
 @dataclass(frozen=True, slots=True)
 class LiteralSyntax:
-    """A literal.
-
-    Attributes
-    ----------
-    parts : tuple of str
-        The tokens of the literal; only a string can have several.
-    """
+    """A literal."""
 
     kind: Literal["integer", "float", "fixed", "character", "boolean", "string", "wstring"]
-    parts: tuple[str, ...]
+    parts: tuple[str, ...]  # The tokens of the literal; only a string can have several.
     span: Span
 
 
@@ -99,30 +87,19 @@ Expression: TypeAlias = "ScopedName | LiteralSyntax | Unary | Chain"
 
 @dataclass(frozen=True, slots=True)
 class Annotation:
-    """``@name``, ``@name(value)`` or ``@name(key=value, ...)``.
-
-    Attributes
-    ----------
-    arguments : tuple of (NameSyntax or None) and Expression
-        A value without a key has `None` for its name.
-    """
+    """``@name``, ``@name(value)`` or ``@name(key=value, ...)``."""
 
     name: ScopedName
+    # A value without a key has `None` for its name.
     arguments: tuple[tuple[NameSyntax | None, Expression], ...]
     span: Span
 
 
 @dataclass(frozen=True, slots=True)
 class BasicType:
-    """A type of fixed size.
+    """A type of fixed size."""
 
-    Attributes
-    ----------
-    name : str
-        The name in ROS. ``long double`` has its name in IDL, because only IDL has this type.
-    """
-
-    name: str
+    name: str  # The name in ROS. `long double` has its name in IDL, because only IDL has this type.
     span: Span
 
 

@@ -58,10 +58,8 @@ class Expander:
     ) -> TypeSyntax:
         """Expand the type of a struct's member.
 
-        Raises
-        ------
-        IdlError
-            If the type is wrong; `AlreadyReportedError` if a typedef's error was raised before.
+        Raises `IdlError` if the type is wrong; `AlreadyReportedError` if a typedef's error was
+        raised before.
         """
         declared = Declared(path, type_, declarator, struct)
         return replace(self._expand(None, declared), span=type_.span)
@@ -75,10 +73,7 @@ class Expander:
     def _expand(self, name: str | None, declared: Declared) -> TypeSyntax:
         """Follow typedefs down to a type that is not a typedef, then apply them one by one.
 
-        Parameters
-        ----------
-        name : str or None
-            That of the typedef to begin with; `None` for a member.
+        * `name`: that of the typedef to begin with; `None` for a member.
         """
         layers = {name: declared}
         found: TypeSyntax | None = None

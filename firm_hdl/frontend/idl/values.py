@@ -81,15 +81,9 @@ _ESCAPE = re.compile(r"\\(?:([ntvbrfa\\'\"])|([0-7]{1,3})|x([0-9A-Fa-f]{1,2})|(u
 def evaluate(expression: Expression, lookup: Lookup, bits: int | None = None) -> Value:
     """Evaluate an expression.
 
-    Parameters
-    ----------
-    bits : int or None
-        Number of bits that `~` inverts: the size of the target type if that type is unsigned.
+    * `bits`: number of bits that `~` inverts: the size of the target type if that type is unsigned.
 
-    Raises
-    ------
-    IdlError
-        If the expression has no value.
+    Raises `IdlError` if the expression has no value.
     """
     match expression:
         case ScopedName():
@@ -110,15 +104,9 @@ def evaluate(expression: Expression, lookup: Lookup, bits: int | None = None) ->
 def fit(value: Value, name: str, span: Span) -> bool | int | float | str:
     """Convert a value to a type.
 
-    Parameters
-    ----------
-    name : str
-        A key of `IDL_PRIMITIVES`, ``string`` or ``wstring``.
+    * `name`: a key of `IDL_PRIMITIVES`, ``string`` or ``wstring``.
 
-    Raises
-    ------
-    IdlError
-        If the value does not fit the type.
+    Raises `IdlError` if the value does not fit the type.
     """
     kind, content = value
     if name in ("string", "wstring"):

@@ -22,11 +22,7 @@ def add_counters(m: Module, counters: data.View, events: Mapping[str, Value]) ->
 
     Events are registered first, so a counter changes 2 cycles after its event.
 
-    Parameters
-    ----------
-    counters : view of `counters_layout`
-    events : mapping of str to Value
-        By the name of the counter.
+    * `events`: by the name of the counter.
     """
     for name, event in events.items():
         seen = Signal(name=f"{name}_seen")

@@ -204,14 +204,8 @@ def _layout(gate: PacketGate) -> data.StructLayout:
 class _Verdicts:
     """The logic between beats that wait and the memory: the verdict on each packet, and its status.
 
-    Parameters
-    ----------
-    m : Module
-    gate : PacketGate
-    parser, fifo
-        Those of the gate.
-    waiting : SyncFIFO
-        Beats, of `_layout`.
+    * `parser`, `fifo`: those of the gate.
+    * `waiting`: beats, of `_layout`.
     """
 
     def __init__(
@@ -276,10 +270,7 @@ class _Verdicts:
     def report_dropped(self, tail_drop: TailDrop, none_waits: Value) -> None:
         """Give the statuses of packets that were dropped whole, before the packet after them.
 
-        Parameters
-        ----------
-        none_waits : Value
-            No beat is between the tail drop and the parser.
+        * `none_waits`: no beat is between the tail drop and the parser.
         """
         m, head = self.m, self.head
         reported = Signal(range(MOST_DROPPED + 1), name="reported")

@@ -50,23 +50,9 @@ class MemoryShape:
     A position is the address of a beat, with a lap bit above it. So the difference of two positions
     tells a full memory from an empty one.
 
-    Parameters
-    ----------
-    bus_bytes, memory_bytes, packets, side_bits
-        As for :class:`PacketFifo`.
+    * `bus_bytes`, `memory_bytes`, `packets`, `side_bits`: as for :class:`PacketFifo`.
 
-    Attributes
-    ----------
-    beats : int
-        Beats in the memory.
-    beat : StructLayout
-        A word of the memory: a beat, with `side` if there are such bits.
-    address_bits, position_bits, lane_bits : int
-        Bits of an address, of a position, and of the number of a byte in its beat.
-
-    Raises
-    ------
-    TypeError, ValueError
+    Raises `TypeError` or `ValueError`.
     """
 
     def __init__(self, bus_bytes: int, memory_bytes: int, packets: int, side_bits: int = 0):
@@ -81,8 +67,10 @@ class MemoryShape:
         if packets < 1:
             raise ValueError(f"Number of packets must be at least 1, not {packets}")
         self.bus_bytes, self.memory_bytes, self.packets = bus_bytes, memory_bytes, packets
-        self.beats = memory_bytes // bus_bytes
+        self.beats = memory_bytes // bus_bytes  # Beats in the memory.
+        # A word of the memory: a beat, with `side` if there are such bits.
         self.side_bits, self.beat = side_bits, beat_layout(bus_bytes, side_bits)
+        # Bits of an address, of a position, and of the number of a byte in its beat.
         self.lane_bits = ceil_log2(bus_bytes)
         self.address_bits = ceil_log2(self.beats)
         self.position_bits = self.address_bits + 1

@@ -23,10 +23,7 @@ def beat_layout(bus_bytes: int, side_bits: int) -> data.StructLayout:
 def side_members(side_bits: int) -> dict[str, Any]:
     """Return the members `side_in` and `side_out`; without bits, there are none.
 
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no number of bits.
+    Raises `TypeError` or `ValueError` if it is no number of bits.
     """
     check_bits("Number of side bits", side_bits)
     return {"side_in": In(side_bits), "side_out": Out(side_bits)} if side_bits else {}

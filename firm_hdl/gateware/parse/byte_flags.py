@@ -25,11 +25,6 @@ class ByteFlags(wiring.Component):
     ----------
     program : DeserializerProgram
 
-    Attributes
-    ----------
-    states : list of int
-        States with bytes of the encapsulation header that are checked.
-
     Members
     -------
     beat : In(beat_layout(plan))
@@ -44,6 +39,7 @@ class ByteFlags(wiring.Component):
 
     def __init__(self, program: DeserializerProgram):
         self.program, self.ring = program, Ring(program.plan)
+        # States with bytes of the encapsulation header that are checked.
         self.states = [each.number for each in program.states if each.checks]
         super().__init__(
             {

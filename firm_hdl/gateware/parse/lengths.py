@@ -224,36 +224,23 @@ class StepLength:
 
     All values are combinational, from registers and the table. In a state without a length,
     `run_skips`, `loop_skips` and `charged` are 0, and the other values have no meaning.
-
-    Attributes
-    ----------
-    entry : View or None
-        The columns that :class:`Length` names; `None` if the program has no lengths.
-    count : Value
-        The length on the wire, a cycle later. It includes the NUL of a CDR `string`.
-    zero, over : Value(1)
-        The length is 0; the length is above the largest legal value.
-    charged : Value(1)
-        The length is legal by itself, and large enough to be charged to the budget.
-    run_skips, loop_skips : Value(1)
-        The body of the run or of the loop is skipped: no element, no word before the rest, or an
-        illegal length.
-    at_most_one_pass, two_passes : Value(1)
-        Passes of the body; `two_passes` is valid only if the other one is 0.
-    rest : Value(range(lanes + 1))
-        Items in the rest.
     """
 
+    # The columns that `Length` names; `None` if the program has no lengths.
     entry: data.View | None
-    count: Value
+    count: Value  # The length on the wire, a cycle later. It includes the NUL of a CDR `string`.
+    # The length is 0; the length is above the largest legal value.
     zero: Value
     over: Value
-    charged: Value
+    charged: Value  # The length is legal by itself, and large enough to be charged to the budget.
+    # The body of the run or of the loop is skipped: no element, no word before the rest, or an
+    # illegal length.
     run_skips: Value
     loop_skips: Value
+    # Passes of the body; `two_passes` is valid only if the other one is 0.
     at_most_one_pass: Value
     two_passes: Value
-    rest: Value
+    rest: Value  # Items in the rest.
 
 
 def length_of_step(

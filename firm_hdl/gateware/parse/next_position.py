@@ -33,20 +33,11 @@ _REMARKS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NextPositions:
-    """The last byte of the next state, for each way to it.
+    """The last byte of the next state, for each way to it."""
 
-    Attributes
-    ----------
-    exit : Value
-        If the next state is an exit.
-    body : Value
-        If it is the body of the run or loop that the state begins.
-    after_rest : Value
-        If it is an exit, and the state begins a run whose items are all in the rest.
-    """
-
-    exit: Value
-    body: Value
+    exit: Value  # If the next state is an exit.
+    body: Value  # If it is the body of the run or loop that the state begins.
+    # If it is an exit, and the state begins a run whose items are all in the rest.
     after_rest: Value
 
 
@@ -72,14 +63,9 @@ def next_positions(
 ) -> NextPositions:
     """Compute where the next state ends.
 
-    Parameters
-    ----------
-    last_at : Value
-        The last byte of the state's map or word.
-    phase : Value or int
-        Position after the packet's encapsulation header, modulo 8.
-    begins_run : Value(1)
-        The length of the state counts the items of a run.
+    * `last_at`: the last byte of the state's map or word.
+    * `phase`: position after the packet's encapsulation header, modulo 8.
+    * `begins_run`: the length of the state counts the items of a run.
     """
     ring, bus = Ring(program.plan), program.plan.bus_bytes
 

@@ -160,10 +160,7 @@ class Sequencer(wiring.Component):
         A state has two words: that of items is a rest, a word of a counted run, or the first word
         of a map with two; the other one is the map, or its last word.
 
-        Parameters
-        ----------
-        drained : Value(1)
-            After an error, the state is executed.
+        * `drained`: after an error, the state is executed.
         """
         flow, ring, bus = walk.flow, walk.ring, self.program.plan.bus_bytes
         limit, order = self.arrival.limit, self.orders.payload
@@ -254,10 +251,7 @@ class Sequencer(wiring.Component):
     def _room(self, room: Value) -> Value:
         """Return how many bytes of a word come before the packet's end.
 
-        Parameters
-        ----------
-        room : Value
-            Distance from the word's first byte to the packet's end; may be negative.
+        * `room`: distance from the word's first byte to the packet's end; may be negative.
         """
         bus, room = self.program.plan.bus_bytes, room[: Ring(self.program.plan).bits]
         return Mux(room[-1], 0, Mux(room >= bus, bus, room[: bus.bit_length()]))

@@ -24,30 +24,16 @@ class Findings:
     """What is wrong with the bytes of a state. Combinational.
 
     An error is found as soon as its byte has come, even if the state waits for later bytes.
-
-    Attributes
-    ----------
-    header : Value(1)
-        A checked byte of the encapsulation header is wrong.
-    nul : Value(1)
-        A string has no terminator.
-    cut : Value(1)
-        The packet has ended, and bytes of the state are missing.
-    trailing : Value(1)
-        All bytes of the state are present, and more bytes follow than may follow the message.
-    over : Value(1)
-        The state begins a run or loop with a length above its limit. Valid if the state is
-        executed.
-    good : Value(1)
-        All bytes of the state are present, and none of them is wrong.
     """
 
-    header: Value
-    nul: Value
-    cut: Value
+    header: Value  # A checked byte of the encapsulation header is wrong.
+    nul: Value  # A string has no terminator.
+    cut: Value  # The packet has ended, and bytes of the state are missing.
+    # All bytes of the state are present, and more bytes follow than may follow the message.
     trailing: Value
+    # The state begins a run or loop with a length above its limit. Valid if the state is executed.
     over: Value
-    good: Value
+    good: Value  # All bytes of the state are present, and none of them is wrong.
 
 
 class Walk:
@@ -66,62 +52,17 @@ class Walk:
 
     Call :meth:`advance` once.
 
-    Parameters
-    ----------
-    m : Module
-    program : DeserializerProgram
-    arrival : interface of ArrivalSignature(plan)
-    bad : Value(1)
-        The packet has an error. Lengths are 0 from then on, and positions have no meaning.
-
-    Attributes
-    ----------
-    flow : Flow
-        State and counters.
-    length : StepLength
-        The state's length, decoded.
-    begins_nothing, begins_run, begins_loop, is_words, takes_rest, at_end : Value(1)
-        Constants of the state; see :class:`DeserializerState`.
-    last_at : Signal(position)
-        Last byte of the state's map or word.
-    first_at : Signal(position)
-        First byte after the previous state, or the first item of a run.
-    rest : Signal(range(lanes + 1))
-        Items in the rest of the run that the state takes.
-    nul_at : Signal(position)
-        In a state that takes a rest: first byte after the items of the rest. It has no meaning in
-        the states before.
-    has_nul : Signal(1)
-        A NUL must be at `nul_at` in the state that takes the rest.
-    phase : Value(3) or int
-        Position after the packet's encapsulation header, modulo 8; a constant if the bus has 8
-        bytes or more.
-    revisits : Signal(1)
-        The state is that of a length again, which claimed too much: it is left at once. Constants
-        of the state are those of the state after it.
-    step_end : Signal(position)
-        First byte after the state's map or word.
-    not_last_at : Signal(position)
-        `-1 - last_at`.
-    left : Signal(position)
-        Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
-    present : Signal(1)
-        All bytes of the state are in the buffer.
-    exits_always : Signal(1)
-        The next state is an exit of this one, whatever the length is.
-    done : Signal(1)
-        The next state is an exit of this one, always or because of the length; else it is its body.
-    ends_message, ends_packet : Signal(1)
-        The message ends with this state, and the packet has ended as well.
+    * `bad`: the packet has an error. Lengths are 0 from then on, and positions have no meaning.
     """
 
     def __init__(self, m: Module, program: DeserializerProgram, arrival: Any, bad: Value):
         self.m, self.program, self.arrival, self.bad = m, program, arrival, bad
         plan = program.plan
         self.ring = ring = Ring(plan)
-        self.flow = flow = Flow(m, program)
+        self.flow = flow = Flow(m, program)  # State and counters.
         # After a length that claims too much, its state begins nothing: `advance` writes the flag.
         self.may_revisit = program.has_leaves and plan.has_claims
+        # Constants of the state; see `DeserializerState`.
         self.begins_nothing = flow.register(
             "begins_nothing",
             1,
@@ -141,15 +82,25 @@ class Walk:
         )
 
         start = program.states[program.start.to or 0].last_offset
+        # Last byte of the state's map or word.
         self.last_at = ring.position(
             "last_at", init=start % (1 << ring.bits), remark="last byte of the step's map or word"
         )
+        # First byte after the previous state, or the first item of a run.
         self.first_at = ring.position("first_at", remark="first byte after the step before")
+        # Items in the rest of the run that the state takes.
         self.rest = Signal(
             program.rest_bits, name="rest", attrs={REMARK: "items in the rest of the run"}
         )
+        # A NUL must be at `nul_at` in the state that takes the rest.
+        # In a state that takes a rest: first byte after the items of the rest. It has no meaning in
+        # the states before.
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
+        # The state is that of a length again, which claimed too much: it is left at once. Constants
+        # of the state are those of the state after it.
         self.revisits: Value = Signal(name="revisits") if self.may_revisit else Const(0, 1)
+        # Position after the packet's encapsulation header, modulo 8; a constant if the bus has 8
+        # bytes or more.
         self.phase: Value | int = plan.header_bytes
         if plan.bus_bytes < 8:
             self.phase = Const(plan.header_bytes % 8, 3)
@@ -157,11 +108,18 @@ class Walk:
                 self.phase = Signal(3, name="phase", init=plan.header_bytes % 8)
 
         # The length is looked up at a register, so the read of the table starts with the cycle.
+        # The state's length, decoded.
         self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
-        self.not_last_at = named(m, "not_last_at", ~self.last_at, "-1 - last_at")
+        self.not_last_at = named(m, "not_last_at", ~self.last_at, "-1 - last_at")  # `-1 - last_at`.
+        # Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
+        # First byte after the state's map or word.
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
-        self.present = Signal(name="present")
+        self.present = Signal(name="present")  # All bytes of the state are in the buffer.
+        # The next state is an exit of this one, always or because of the length; else it is its
+        # body.
+        # The next state is an exit of this one, whatever the length is.
         self.exits_always, self.done = Signal(name="exits_always"), Signal(name="done")
+        # The message ends with this state, and the packet has ended as well.
         self.ends_message, self.ends_packet = (
             Signal(name="ends_message"),
             Signal(name="ends_packet"),
@@ -236,15 +194,10 @@ class Walk:
     ) -> None:
         """Add the logic that goes to the next state.
 
-        Parameters
-        ----------
-        issue : Value(1)
-            The state is executed in this cycle.
-        aborts : Value or None
-            The next state is the end of the packet, unless it has ended.
-        revisit : Value or None
-            The length of the state before claims too much: go back to its state, which then begins
-            nothing. Nothing is executed in this cycle.
+        * `issue`: the state is executed in this cycle.
+        * `aborts`: the next state is the end of the packet, unless it has ended.
+        * `revisit`: the length of the state before claims too much: go back to its state, which
+          then begins nothing. Nothing is executed in this cycle.
         """
         m, length = self.m, self.length
         self._take_rest(issue)

@@ -43,22 +43,15 @@ ANY = "--"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinkScript:
-    """The frames of a bench.
+    """The frames of a bench."""
 
-    Attributes
-    ----------
-    lines : tuple of str
-        ``> HEX``: a frame to the node. ``< HEX``: a frame from the node, in which ``--`` stands for
-        any byte. ``=``: wait until all frames before this line have come.
-    ignores_topics : bool
-        Frames of topics may come at any time, and are not judged unless the file of a user expects
-        some of the same topic: those of control messages are.
-    loops : tuple of pairs of Topic
-        Subscriptions whose messages the bench connects with publications.
-    """
-
+    # `> HEX`: a frame to the node. `< HEX`: a frame from the node, in which `--` stands for any
+    # byte. `=`: wait until all frames before this line have come.
     lines: tuple[str, ...]
+    # Frames of topics may come at any time, and are not judged unless the file of a user expects
+    # some of the same topic: those of control messages are.
     ignores_topics: bool
+    # Subscriptions whose messages the bench connects with publications.
     loops: tuple[tuple[Topic, Topic], ...]
 
     @property
@@ -77,19 +70,13 @@ def link_script(
 ) -> LinkScript | None:
     """Choose the frames of a bench.
 
-    Parameters
-    ----------
-    stimuli : callable or None
-        `None`: only control messages are sent.
-    has_accelerator : bool
-        Whether the node has an accelerator inside. What it does is known of a :class:`.Loop` only;
-        others get no packets, because the gates drop those that are sent.
+    * `stimuli`: with `None`, only control messages are sent.
+    * `has_accelerator`: whether the node has an accelerator inside. What it does is known of a
+      :class:`.Loop` only; others get no packets, because the gates drop those that are sent.
 
-    Returns
-    -------
-    LinkScript or None
-        `None` for a link that takes too long to simulate, as a bit of a UART is many cycles; for an
-        Ethernet, which needs another machine; and for a participant of ROS 2, which has no frames.
+    Returns: `None` for a link that takes too long to simulate, as a bit of a UART is many cycles;
+    for an Ethernet, which needs another machine; and for a participant of ROS 2, which has no
+    frames.
     """
     if description.link.kind in ("uart", "rtps") or description.link.has_ethernet:
         return None

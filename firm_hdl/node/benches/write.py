@@ -53,30 +53,16 @@ def bench_files(
 ) -> dict[str, str]:
     """Write the benches of a node, the frames, and the scripts that run them.
 
-    Parameters
-    ----------
-    name : str
-        Name of the entity; the benches are ``NAME_tb``.
-    ports : sequence of ComponentPort
-        All ports of the top level.
-    script : LinkScript
-    module : str
-        Name of the module in Verilog.
-    vhdl_ports : mapping of str to str
-        Names of ports in VHDL, by those of the netlist.
-    vhdl_files : sequence of str
-        Files of the node in compile order.
-    header : str
-        Lines of a comment at the head of each file.
-    more : sequence of str
-        More files of Verilog.
-    verilog_tool : "iverilog" or "verilator"
-        What runs the bench in Verilog.
+    * `name`: name of the entity; the benches are ``NAME_tb``.
+    * `ports`: all ports of the top level.
+    * `module`: name of the module in Verilog.
+    * `vhdl_ports`: names of ports in VHDL, by those of the netlist.
+    * `vhdl_files`: files of the node in compile order.
+    * `header`: lines of a comment at the head of each file.
+    * `more`: more files of Verilog.
+    * `verilog_tool`: what runs the bench in Verilog.
 
-    Returns
-    -------
-    dict of str to str
-        Texts by paths in the folder of the node.
+    Returns: texts by paths in the folder of the node.
     """
     top = f"{name}_tb"
     values = _values(description, ports, script) | {
@@ -196,10 +182,7 @@ def bench_core(name: str) -> dict[str, dict[str, Any]]:
 
     The target `sim` runs the bench in GHDL, and `sim_verilog` that in Icarus Verilog.
 
-    Parameters
-    ----------
-    name : str
-        Name of the node's entity.
+    * `name`: name of the node's entity.
     """
     top = f"{name}_tb"
     return {

@@ -50,41 +50,23 @@ _A_NAME = "letters, digits, '_', '+' and '-'"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Board:
-    """A board.
-
-    Attributes
-    ----------
-    name, title : str
-    family : Family
-    device, package, speed : str
-        As nextpnr names them; the speed grade is empty if there are none.
-    clock : Pin
-    clock_hz : float
-    is_pll_pad : bool
-        Whether the pin of the clock is that of the PLL (iCE40).
-    reset : Pin or None
-        A button that resets the node.
-    constants : tuple of pairs of Pin and bool
-        Pins that have one level for ever.
-    pins : mapping of str to Pin
-        All others by their names, such as ``led.0`` and ``uart.rx``.
-    load : str
-        The command that loads a bitstream; the name of the bitstream comes last, or in place of
-        ``{bitstream}``.
-    """
+    """A board."""
 
     name: str
     title: str
     family: Family
+    # As nextpnr names them; the speed grade is empty if there are none.
     device: str
     package: str
     speed: str
     clock: Pin
     clock_hz: float
-    is_pll_pad: bool
-    reset: Pin | None
-    constants: tuple[tuple[Pin, bool], ...]
-    pins: Mapping[str, Pin]
+    is_pll_pad: bool  # Whether the pin of the clock is that of the PLL (iCE40).
+    reset: Pin | None  # A button that resets the node.
+    constants: tuple[tuple[Pin, bool], ...]  # Pins that have one level for ever.
+    pins: Mapping[str, Pin]  # All others by their names, such as `led.0` and `uart.rx`.
+    # The command that loads a bitstream; the name of the bitstream comes last, or in place of
+    # `{bitstream}`.
     load: str
 
     def groups(self) -> dict[str, list[Pin]]:
@@ -111,12 +93,8 @@ def board_list() -> Iterator[str]:
 def read_board(name: str) -> Board:
     """Read a board: one of ours by its name, or a file of the user's by its path.
 
-    Raises
-    ------
-    UserError
-        If there is no such board.
-    DefinitionError
-        With all mistakes in the file.
+    Raises `UserError` if there is no such board. Raises `DefinitionError`: with all mistakes in the
+    file.
     """
     is_file = name.endswith((".yaml", ".yml")) or os.sep in name
     if not is_file and name not in board_names():

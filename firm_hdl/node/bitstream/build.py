@@ -49,21 +49,12 @@ _PREPARATION = "hierarchy -top top; proc; flatten; opt_clean"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bitstream:
-    """A bitstream.
-
-    Attributes
-    ----------
-    file, report : Path
-    was_current : bool
-        Both were there, and nothing was done.
-    facts : mapping
-        ``clocks``, ``cells``, ``seed`` and ``tools``, as in the manifest.
-    """
+    """A bitstream."""
 
     file: Path
     report: Path
-    was_current: bool
-    facts: Mapping[str, Any]
+    was_current: bool  # Both were there, and nothing was done.
+    facts: Mapping[str, Any]  # `clocks`, `cells`, `seed` and `tools`, as in the manifest.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,16 +69,9 @@ class Tools:
 def find_tools(family: Family, *, is_run: bool = True) -> Tools:
     """Find the programs for a family of FPGAs: the packages of YoWASP, or those on the PATH.
 
-    Parameters
-    ----------
-    is_run : bool
-        As for :func:`firm_hdl.jobs.programs.find_packaged`.
+    * `is_run`: as for :func:`firm_hdl.jobs.programs.find_packaged`.
 
-    Raises
-    ------
-    ProgramMissingError
-    ToolError
-        If a package is installed and does not run.
+    Raises `ProgramMissingError`. Raises `ToolError` if a package is installed and does not run.
     """
     version = r"Version (?:nextpnr-)?(\S+?)\)"
     placer = find_packaged(
@@ -120,23 +104,13 @@ def build_bitstream(
     The folder has a bitstream only if the clock is reached. Whatever goes wrong later than the top
     level, the folder has that, the constraints, and the report, if there is one.
 
-    Parameters
-    ----------
-    built : BuiltDesign
-        The folder of the node, as :func:`firm_hdl.node.build.build_node` made it.
-    force : bool
-        Make a bitstream that is current, too.
-    report : callable
-        Called with what is done next.
+    * `built`: the folder of the node, as :func:`firm_hdl.node.build.build_node` made it.
+    * `force`: make a bitstream that is current, too.
+    * `report`: called with what is done next.
 
-    Raises
-    ------
-    DefinitionError
-        If node and board do not fit together.
-    ProgramMissingError
-        If a tool is not installed.
-    UserError
-        If a tool fails, the node is too large, or its clock is not reached.
+    Raises `DefinitionError` if node and board do not fit together. Raises `ProgramMissingError` if
+    a tool is not installed. Raises `UserError` if a tool fails, the node is too large, or its clock
+    is not reached.
     """
     node = read_manifest(built.folder)
     assert node is not None, "it was just built"
@@ -235,9 +209,7 @@ def _placed(
 ) -> dict[str, Any]:
     """Synthesize, place and route; return the figures of the first seed that reaches the clock.
 
-    Raises
-    ------
-    ToolError, UserError
+    Raises `ToolError` or `UserError`.
     """
     report("synthesis")
     script = "; ".join([*reads, _PREPARATION, f"{family.synthesis} -json top.json"])
@@ -280,12 +252,7 @@ def _run(program: Program, command: list[str], folder: Path) -> None:
 
     File names are relative, because programs of YoWASP have a ``/tmp`` of their own.
 
-    Raises
-    ------
-    ToolError
-        If the program fails.
-    UserError
-        If the design does not fit.
+    Raises `ToolError` if the program fails. Raises `UserError` if the design does not fit.
     """
     try:
         run_tool(command, folder, timeout=TIMEOUT)
@@ -305,10 +272,7 @@ def _run(program: Program, command: list[str], folder: Path) -> None:
 def _figures(said: Mapping[str, Any], top: BoardTop) -> dict[str, Any]:
     """Read clocks, cells and the longest path in a report of nextpnr.
 
-    Raises
-    ------
-    ToolError
-        If the clock of the node is not among those that nextpnr looked at.
+    Raises `ToolError` if the clock of the node is not among those that nextpnr looked at.
     """
     clocks = {
         name: {

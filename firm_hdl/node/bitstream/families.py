@@ -13,78 +13,45 @@ MOST_DEVIATION = 1e-4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pin:
-    """A pin of a board.
+    """A pin of a board."""
 
-    Attributes
-    ----------
-    name : str
-        Such as ``led.0``, or ``clock``.
-    site : str
-        The name of the pin of the package, such as ``B2``.
-    is_low : bool
-        Whether 0 V means 1, as at a LED to the supply.
-    electrical : mapping of str to str
-        ``standard``, ``pull``, ``drive`` in mA and ``slew``, as far as they are known.
-    """
-
-    name: str
-    site: str
-    is_low: bool = False
+    name: str  # Such as `led.0`, or `clock`.
+    site: str  # The name of the pin of the package, such as `B2`.
+    is_low: bool = False  # Whether 0 V means 1, as at a LED to the supply.
+    # `standard`, `pull`, `drive` in mA and `slew`, as far as they are known.
     electrical: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pll:
-    """A PLL: the frequency that it makes, and its instance.
-
-    Attributes
-    ----------
-    hz : float
-    verilog : str
-        An instance from `clk` to `aclk` and `locked`.
-    """
+    """A PLL: the frequency that it makes, and its instance."""
 
     hz: float
-    verilog: str
+    verilog: str  # An instance from `clk` to `aclk` and `locked`.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """A family of FPGAs.
-
-    Attributes
-    ----------
-    name : str
-    devices : mapping of str to str
-        Options of nextpnr by device.
-    package, placer, packer : str
-        Python package of YoWASP that has nextpnr and the packer, and the names of both.
-    synthesis : str
-        Command of Yosys, for a module ``top``.
-    constraints, netlist, bitstream : str
-        Options of nextpnr for the files of constraints and of its result, and names of these files
-        and of the bitstream: ``lpf pins.lpf``.
-    pack : tuple of str
-        Options of the packer.
-    pll : callable
-        Called with the frequency at the pin, the frequency that is wanted, and whether the pin is
-        the PLL's own. It returns the PLL that comes nearest, if there is any.
-    constrain : callable
-        Called with the ports and their pins, and with the frequencies in Hz of those ports that
-        are clocks. It returns the file of constraints.
-    """
+    """A family of FPGAs."""
 
     name: str
-    devices: Mapping[str, str]
+    devices: Mapping[str, str]  # Options of nextpnr by device.
+    # Python package of YoWASP that has nextpnr and the packer, and the names of both.
     package: str
     placer: str
     packer: str
-    synthesis: str
+    synthesis: str  # Command of Yosys, for a module `top`.
+    # Options of nextpnr for the files of constraints and of its result, and names of these files
+    # and of the bitstream: `lpf pins.lpf`.
     constraints: tuple[str, str]
     netlist: tuple[str, str]
     bitstream: str
-    pack: tuple[str, ...] = ()
+    pack: tuple[str, ...] = ()  # Options of the packer.
+    # Called with the frequency at the pin, the frequency that is wanted, and whether the pin is the
+    # PLL's own. It returns the PLL that comes nearest, if there is any.
     pll: Callable[[float, float, bool], Pll | None]
+    # Called with the ports and their pins, and with the frequencies in Hz of those ports that are
+    # clocks. It returns the file of constraints.
     constrain: Callable[[Sequence[tuple[str, Pin]], Mapping[str, float]], str]
 
 

@@ -41,21 +41,11 @@ _DIRECTIONS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoardTop:
-    """A top level.
+    """A top level."""
 
-    Attributes
-    ----------
-    verilog : str
-        The module ``top``.
-    constraints : str
-        The file of constraints for nextpnr.
-    clock_hz : float
-        Frequency of the node's clock.
-    """
-
-    verilog: str
-    constraints: str
-    clock_hz: float
+    verilog: str  # The module `top`.
+    constraints: str  # The file of constraints for nextpnr.
+    clock_hz: float  # Frequency of the node's clock.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,17 +66,10 @@ def board_top(
 ) -> BoardTop:
     """Write the top level of a node for a board.
 
-    Parameters
-    ----------
-    ports : sequence of mappings
-        The ports of the node, as its manifest has them.
-    module : str
-        Name of the node's module in Verilog.
+    * `ports`: the ports of the node, as its manifest has them.
+    * `module`: name of the node's module in Verilog.
 
-    Raises
-    ------
-    DefinitionError
-        With all that does not fit together, at its place in the description.
+    Raises `DefinitionError`: with all that does not fit together, at its place in the description.
     """
     problems: list[Diagnostic] = []
 

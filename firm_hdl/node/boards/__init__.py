@@ -40,17 +40,11 @@ _LINKS = {"udp": "udp", "tcp": "uart", "serial": "uart", "zynq": "axi_dma"}
 def board_of(name: str, description: Description, **simulation: Any) -> Board:
     """Make a board, which is not yet open.
 
-    Parameters
-    ----------
-    name : str
-        One of `BOARD_FORMS`. Port and rate are by default those of the description's link.
-    simulation
-        Further parameters of a :class:`.SimulatedBoard`.
+    * `name`: one of `BOARD_FORMS`. Port and rate are by default those of the description's link.
+    * `simulation`: further parameters of a :class:`.SimulatedBoard`.
 
-    Raises
-    ------
-    UserError
-        If the name has another form or is that of another link, or a simulation is not possible.
+    Raises `UserError` if the name has another form or is that of another link, or a simulation is
+    not possible.
     """
     if name == "sim":
         # Amaranth takes seconds to import, and a host of a real board does not need it.

@@ -20,10 +20,6 @@ class Board(ABC):
 
     Attributes
     ----------
-    name : str
-        As the user named it.
-    frame_bytes : int or None
-        Most bytes of a frame, header included. `None`: no limit.
     sample_seconds : float
         How often the time of the node is compared with that of the host.
     silent_seconds : float
@@ -32,11 +28,6 @@ class Board(ABC):
         A request without an answer is repeated after so long.
     end_seconds : float
         How long, at most, a bridge asks at its end what has arrived and what was lost.
-    bytes_per_second : float or None
-        How fast the way is; `None`: fast enough not to be waited for.
-    counters : Counter of str
-        What the way itself lost, by cause: ``damaged`` and ``large`` frames, ``unreachable`` for
-        datagrams. They go on when the board is opened again.
     """
 
     sample_seconds = 1.0
@@ -45,9 +36,12 @@ class Board(ABC):
     end_seconds = 1.0
 
     def __init__(self, name: str, frame_bytes: int | None = None) -> None:
-        self.name = name
-        self.frame_bytes = frame_bytes
+        self.name = name  # As the user named it.
+        self.frame_bytes = frame_bytes  # Most bytes of a frame, header included. `None`: no limit.
+        # How fast the way is; `None`: fast enough not to be waited for.
         self.bytes_per_second: float | None = None
+        # What the way itself lost, by cause: `damaged` and `large` frames, `unreachable` for
+        # datagrams. They go on when the board is opened again.
         self.counters: Counter[str] = Counter()
 
     @abstractmethod

@@ -39,13 +39,8 @@ BAUD_RATES = {
 class ByteBoard(Board):
     """What both have in common: a file descriptor that bytes are written to and read from.
 
-    Parameters
-    ----------
-    name : str
-    room_bytes : int
-        What may wait before there is no more room; one message always may.
-    max_bytes : int
-        Largest frame that is received.
+    * `room_bytes`: what may wait before there is no more room; one message always may.
+    * `max_bytes`: largest frame that is received.
     """
 
     def __init__(self, name: str, room_bytes: int, max_bytes: int = 1 << 24) -> None:
@@ -126,11 +121,7 @@ class ByteBoard(Board):
 class TcpBoard(ByteBoard):
     """Bytes over a connection of TCP, such as that of a server of serial lines.
 
-    Parameters
-    ----------
-    name : str
-    host, port
-        Where the board listens.
+    * `host`, `port`: where the board listens.
     """
 
     def __init__(self, name: str, host: str, port: int) -> None:
@@ -153,13 +144,8 @@ class TcpBoard(ByteBoard):
 class SerialBoard(ByteBoard):
     """A serial line, or a pty: 8 data bits, no parity, 1 stop bit, no flow control.
 
-    Parameters
-    ----------
-    name : str
-    path : str
-        The device, such as ``/dev/ttyUSB0``.
-    baud : int
-        A key of `BAUD_RATES`.
+    * `path`: the device, such as ``/dev/ttyUSB0``.
+    * `baud`: a key of `BAUD_RATES`.
     """
 
     def __init__(self, name: str, path: str, baud: int) -> None:

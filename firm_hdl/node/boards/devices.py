@@ -23,17 +23,10 @@ _TO_DEVICE, _TO_PROCESSOR = "sync_for_device", "sync_for_cpu"
 class Uio:
     """The registers of a device, and its interrupt. Nobody else can open it meanwhile.
 
-    Parameters
-    ----------
-    name : str
-        ``uio0``, or the name of the device, which is that of its node in the device tree.
-    root : Path
-        Folder of ``dev`` and ``sys``.
+    * `name`: ``uio0``, or the name of the device, which is that of its node in the device tree.
+    * `root`: folder of ``dev`` and ``sys``.
 
-    Raises
-    ------
-    BoardError
-        If there is no such device, or it cannot be used.
+    Raises `BoardError` if there is no such device, or it cannot be used.
     """
 
     def __init__(self, name: str, root: Path = _ROOT) -> None:
@@ -64,10 +57,8 @@ class Uio:
     def take_interrupt(self) -> None:
         """Forget the interrupts so far. No further one comes until they are enabled again.
 
-        Raises
-        ------
-        BoardError
-            If the device is gone, as its driver or its part of the device tree was removed.
+        Raises `BoardError` if the device is gone, as its driver or its part of the device tree was
+        removed.
         """
         try:
             os.read(self._file, 4)
@@ -81,10 +72,7 @@ class Uio:
     def enable_interrupt(self) -> None:
         """Let interrupts come; one that waits comes at once.
 
-        Raises
-        ------
-        BoardError
-            If the device has none.
+        Raises `BoardError` if the device has none.
         """
         try:
             os.write(self._file, (1).to_bytes(4, "little"))
@@ -113,24 +101,10 @@ class DmaBuffer:
     The processor has it in its caches, unless the driver says that they are coherent. So a part is
     handed over before the other side accesses it. Parts begin and end at multiples of 64.
 
-    Parameters
-    ----------
-    name : str
-        Such as ``udmabuf0``.
-    root : Path
-        Folder of ``dev`` and ``sys``.
+    * `name`: such as ``udmabuf0``.
+    * `root`: folder of ``dev`` and ``sys``.
 
-    Attributes
-    ----------
-    address : int
-        Physical address.
-    size : int
-    data : memoryview
-
-    Raises
-    ------
-    BoardError
-        If there is no such buffer, or it cannot be used.
+    Raises `BoardError` if there is no such buffer, or it cannot be used.
     """
 
     def __init__(self, name: str, root: Path = _ROOT) -> None:
@@ -138,7 +112,7 @@ class DmaBuffer:
         self._folder = root / "sys/class/u-dma-buf" / name
         path = root / "dev" / name
         self.size = _number(self._folder / "size", 10)
-        self.address = _number(self._folder / "phys_addr", 0)
+        self.address = _number(self._folder / "phys_addr", 0)  # Physical address.
         is_coherent = bool(_number(self._folder / "dma_coherent", 0))
         # With O_SYNC, memory would be uncached, where processors refuse unaligned copies.
         self._file = _opened(path, os.O_RDWR)

@@ -42,12 +42,8 @@ class NodeOverlay(Overlay):
     def board(self, description: Description, dma: str = "dma") -> ZynqBoard:
         """Return the node as a board.
 
-        Parameters
-        ----------
-        description : Description
-            That of the node in the overlay.
-        dma : str
-            The name of the AXI DMA in the block design.
+        * `description`: that of the node in the overlay.
+        * `dma`: the name of the AXI DMA in the block design.
         """
         about = self.ip_dict[dma]
 

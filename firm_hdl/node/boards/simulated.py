@@ -48,21 +48,12 @@ class SimulatedBoard(Board):
     nothing comes, so the time of the node is set several times per second. Frames come at half the
     rate of the bus.
 
-    Parameters
-    ----------
-    description : Description
-        With an accelerator.
-    engine : {"auto", "verilator", "amaranth"}
-    report : callable or None
-        Told the stages of a compilation.
-    wave : Path or None
-        A file that the waveform is written to: ``.fst`` is FST, any other VCD.
+    * `description`: with an accelerator.
+    * `report`: told the stages of a compilation.
+    * `wave`: a file that the waveform is written to: ``.fst`` is FST, any other VCD.
 
-    Raises
-    ------
-    DefinitionError, UserError
-        If the description has no accelerator, or one that cannot be used, or if the waveform cannot
-        be written.
+    Raises `DefinitionError` or `UserError` if the description has no accelerator, or one that
+    cannot be used, or if the waveform cannot be written.
     """
 
     sample_seconds = 0.1
@@ -107,10 +98,7 @@ class SimulatedBoard(Board):
     def compile(self) -> None:
         """Elaborate and compile the node, which :meth:`open` does otherwise.
 
-        Raises
-        ------
-        UserError
-            If it cannot be compiled.
+        Raises `UserError` if it cannot be compiled.
         """
         with _reported():
             self._simulation = self._start()

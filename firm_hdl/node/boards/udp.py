@@ -25,14 +25,10 @@ class UdpBoard(Board):
 
     Nothing tells that such a board is gone; a bridge notices that it does not answer.
 
-    Parameters
-    ----------
-    name : str
-    host, port
-        Address of the board; datagrams of others are ignored. If it is another machine, the host
-        uses the same port, where that is free: cores such as LiteEth have one for both directions.
-    frame_bytes : int
-        Most bytes of a datagram's payload: a multiple of 16.
+    * `host`, `port`: address of the board; datagrams of others are ignored. If it is another
+      machine, the host uses the same port, where that is free: cores such as LiteEth have one for
+      both directions.
+    * `frame_bytes`: most bytes of a datagram's payload: a multiple of 16.
     """
 
     def __init__(self, name: str, host: str, port: int, frame_bytes: int) -> None:

@@ -87,15 +87,9 @@ class ZynqBoard(Board):
     An error of the DMA ends the board. It is counted as ``DMA errors``, and opening the board again
     resets the DMA, which tells the node to begin anew.
 
-    Parameters
-    ----------
-    name : str
-    uio, buffer : str
-        Names of the devices.
-    frame_bytes : int
-        Most bytes of a frame: the `buffer_bytes` of the link.
-    devices : callable
-        Opens the devices.
+    * `uio`, `buffer`: names of the devices.
+    * `frame_bytes`: most bytes of a frame: the `buffer_bytes` of the link.
+    * `devices`: opens the devices.
     """
 
     def __init__(
@@ -228,10 +222,7 @@ class ZynqBoard(Board):
     def _has_completed(self, channel: Channel) -> bool:
         """Return whether a transfer has completed, once.
 
-        Raises
-        ------
-        BoardError
-            If the channel has stopped.
+        Raises `BoardError` if the channel has stopped.
         """
         registers, at = self._there()[0], _AT[channel] + _DMASR
         status = registers.read(at)

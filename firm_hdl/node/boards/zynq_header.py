@@ -12,10 +12,7 @@ __all__ = ["zynq_header"]
 def zynq_header(description: Description, name: str) -> str:
     """Return the driver, followed by the constants of a node: those that the board has, too.
 
-    Parameters
-    ----------
-    name : str
-        An identifier, such as `wheels`; the namespace of the constants is `wheels_node`.
+    * `name`: an identifier, such as `wheels`; the namespace of the constants is `wheels_node`.
     """
     topics = "".join(
         f"constexpr std::uint16_t topic_{topic.port} = {topic.id};  // {topic.name}: {topic.type}\n"

@@ -51,22 +51,13 @@ class Asked:
 class Arrivals:
     """Put the frames of a board together.
 
-    Parameters
-    ----------
-    receiver : MessageReceiver or None
-        That of the session before, whose sequence and counters go on.
-
-    Attributes
-    ----------
-    receiver : MessageReceiver
-        Of the sequence that counts.
-    suspected_at : float
-        When the last sign of a restart came.
+    * `receiver`: that of the session before, whose sequence and counters go on.
     """
 
     def __init__(self, receiver: MessageReceiver | None = None) -> None:
+        # Of the sequence that counts.
         self.receiver = receiver or MessageReceiver(most_late=_MOST_BEHIND)
-        self.suspected_at = float("-inf")
+        self.suspected_at = float("-inf")  # When the last sign of a restart came.
         # Since the sign: the new sequence, and its messages.
         self._new: MessageReceiver | None = None
         self._new_messages: list[NodeMessage] = []
@@ -116,19 +107,11 @@ class Arrivals:
 
         One answer alone may be damaged, or may belong to a request that was sent before the sign.
 
-        Parameters
-        ----------
-        asked : Asked
-            The request.
-        header, packet
-            Of the answer, which is not taken yet.
-        is_set : bool
-            Whether the time of the node was set.
+        * `asked`: the request.
+        * `header`, `packet`: of the answer, which is not taken yet.
+        * `is_set`: whether the time of the node was set.
 
-        Returns
-        -------
-        list of NodeMessage or None
-            If it has: the messages for the graph that have come since.
+        Returns: if it has: the messages for the graph that have come since.
         """
         ahead = 0 if asked.expected is None else distance(header.sequence, asked.expected)
         was_reset = False

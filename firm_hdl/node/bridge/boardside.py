@@ -28,27 +28,11 @@ time."""
 class BoardSide:
     """A board, the session with it while it is open, and the figures of all sessions.
 
-    Parameters
-    ----------
-    description : Description
-    board : Board
-    counters : BridgeCounters
-        Gets the messages that were lost with the board.
-    report : callable
-        Takes a line of text for people.
-    on_lost : callable
-        Called when the board is gone or has started again: it answers no request of before.
-    clock : callable
-        Returns the time that the node is to have, in ns since the epoch.
-
-    Attributes
-    ----------
-    session : Session or None
-        The talk with the board while it is open.
-    is_opening, was_tried, was_ready : bool
-        The board is being opened; this was tried once; it was ready once.
-    has_read_last : bool
-        All counters of losses were read after :meth:`finish`.
+    * `counters`: gets the messages that were lost with the board.
+    * `report`: takes a line of text for people.
+    * `on_lost`: called when the board is gone or has started again: it answers no request of
+      before.
+    * `clock`: returns the time that the node is to have, in ns since the epoch.
     """
 
     def __init__(
@@ -63,11 +47,13 @@ class BoardSide:
         self._clock = clock
         self._description, self._board, self._counters = description, board, counters
         self._report, self._on_lost = report, on_lost
-        self.session: Session | None = None
+        self.session: Session | None = None  # The talk with the board while it is open.
         # The session before, whose counters of the board go on.
         self._before: Session | None = None
         self._restarts = 0
         self._retry = Retry(*RETRY_SECONDS)
+        # All counters of losses were read after `finish`.
+        # The board is being opened; this was tried once; it was ready once.
         self.is_opening = self.was_tried = self.was_ready = self.has_read_last = False
         self._is_ending = False
         # When a restart may be reported again, and whether the last one was.

@@ -47,28 +47,16 @@ def run_bridge(
 ) -> None:
     """Run a bridge until Ctrl-C (SIGINT) or SIGTERM; print to standard error.
 
-    Parameters
-    ----------
-    board : str
-        See :func:`firm_hdl.node.boards.board_of`.
-    graph, domain, interface
-        See :func:`firm_hdl.node.graphs.graph_of`.
-    seconds : float or None
-        End after so long.
-    engine : str
-        Of a simulated board; see :class:`.SimulatedBoard`.
-    quiet : bool
-        Print no figures, only what happens.
-    wave : Path or None
-        Of a simulated board; see :class:`.SimulatedBoard`.
-    phc : str or None
-        The PTP hardware clock that the node follows, rather than the clock of the system.
+    * `board`: see :func:`firm_hdl.node.boards.board_of`.
+    * `graph`, `domain`, `interface`: see :func:`firm_hdl.node.graphs.graph_of`.
+    * `seconds`: end after so long.
+    * `engine`: of a simulated board; see :class:`.SimulatedBoard`.
+    * `quiet`: print no figures, only what happens.
+    * `wave`: of a simulated board; see :class:`.SimulatedBoard`.
+    * `phc`: the PTP hardware clock that the node follows, rather than the clock of the system.
 
-    Raises
-    ------
-    UserError, DefinitionError
-        If board, graph or clock cannot be used, if the board has another description, or if it has
-        not answered in `seconds`, or until the graph has ended.
+    Raises `UserError` or `DefinitionError` if board, graph or clock cannot be used, if the board
+    has another description, or if it has not answered in `seconds`, or until the graph has ended.
     """
     clock = time.time_ns if phc is None else ptp_clock(phc)
     joined = graph_of(graph, description, domain=domain, interface=interface)
@@ -209,10 +197,7 @@ class Status:
 def status_line(bridge: Bridge, rates: tuple[float, ...]) -> str:
     """Return the line of figures.
 
-    Parameters
-    ----------
-    rates : pair of float
-        Messages per second to the board, and to the graph.
+    * `rates`: messages per second to the board, and to the graph.
     """
     dropped = bridge.counters.dropped.total()
     parts = [

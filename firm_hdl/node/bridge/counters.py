@@ -30,18 +30,12 @@ CAUSES = {
 
 @dataclass(slots=True)
 class BridgeCounters:
-    """Messages by the names of their topics.
+    """Messages by the names of their topics."""
 
-    Attributes
-    ----------
-    to_board, to_graph : Counter of str
-        Messages that were handed over.
-    dropped : Counter of pairs of str
-        Messages that were not, by topic and cause; see `CAUSES`.
-    """
-
+    # Messages that were handed over.
     to_board: Counter[str] = field(default_factory=Counter)
     to_graph: Counter[str] = field(default_factory=Counter)
+    # Messages that were not, by topic and cause; see `CAUSES`.
     dropped: Counter[tuple[str, str]] = field(default_factory=Counter)
 
     def drop(self, topic: str, cause: str, count: int = 1) -> None:
@@ -61,11 +55,8 @@ _FULL = 0.95
 class Load:
     """Measure both directions.
 
-    Parameters
-    ----------
-    description : Description
-    bytes_per_second : float or None
-        What the way carries; `None` if that is not known, and nothing is measured.
+    * `bytes_per_second`: what the way carries; `None` if that is not known, and nothing is
+      measured.
     """
 
     def __init__(self, description: Description, bytes_per_second: float | None) -> None:

@@ -62,17 +62,12 @@ class LostRequests:
 
     The board counts the requests that it takes, so those that were lost on the way to it differ
     from those whose answer was lost. Of a board that does not count them, nothing is known.
-
-    Attributes
-    ----------
-    asked, answered : int
-        Requests that were sent, and answers that came.
-    lost_there, lost_back : int
-        What was lost on the way to the board, and back.
     """
 
+    # Requests that were sent, and answers that came.
     asked: int = 0
     answered: int = 0
+    # What was lost on the way to the board, and back.
     lost_there: int = 0
     lost_back: int = 0
     # By how much the numbers differ when nothing is lost.

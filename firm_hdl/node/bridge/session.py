@@ -61,37 +61,13 @@ class SilentBoardError(Exception):
 class Session:
     """The talk with a board that is open.
 
-    Parameters
-    ----------
-    description : Description
-    frame_bytes : int or None
-        Most bytes of a frame, header included; as of the board.
-    now : float
-        Seconds of a clock that never jumps.
-    sample_seconds : float
-        How often the clocks are compared.
-    silent_seconds : float
-        A board from which nothing whole came for so long is gone.
-    repeat_seconds : float
-        A request without an answer is repeated after so long.
-    before : Session or None
-        The last session with the same board. Its counters and the sequence of messages go on, or
-        are kept and begin anew if the board has started again since.
-
-    Attributes
-    ----------
-    is_ready : bool
-        The board is the right one; messages may pass.
-    answered_at : float
-        When a request was answered last as it should be.
-    restarts : int
-        How often the board has started again.
-    held_back : int
-        Messages of the board that were dropped because it was not known to be the right one.
-    values : dict of int to int
-        Registers by their numbers, as they were read last since the board started.
-    unconfirmed : Unconfirmed
-        Messages for the board. Who sends them notes them there.
+    * `frame_bytes`: most bytes of a frame, header included; as of the board.
+    * `now`: seconds of a clock that never jumps.
+    * `sample_seconds`: how often the clocks are compared.
+    * `silent_seconds`: a board from which nothing whole came for so long is gone.
+    * `repeat_seconds`: a request without an answer is repeated after so long.
+    * `before`: the last session with the same board. Its counters and the sequence of messages go
+      on, or are kept and begin anew if the board has started again since.
     """
 
     def __init__(
@@ -125,6 +101,7 @@ class Session:
         self._asked: dict[int, Asked] = {}
         self._held: deque[NodeMessage] = deque()
         self._latencies: deque[float] = deque(maxlen=_LATENCIES)
+        # When a request was answered last as it should be.
         self._heard = self._waits_until = self.answered_at = now
         self._is_set: bool = before is not None and before._is_set
         self._is_unanswered = self._is_finishing = self._is_settled = False
@@ -135,12 +112,14 @@ class Session:
         # Of the clock; a newer one takes its place, because the time of an older one has passed.
         self._clock_request: ControlRequest | None = None
         self._identity: dict[int, int] = {}
+        # Registers by their numbers, as they were read last since the board started.
         self.values: dict[int, int] = dict(before.values) if before else {}
         # Counters of a board before it started again.
         self._past: Counter[int] = Counter(before._past) if before else Counter()
-        self.unconfirmed = Unconfirmed()
-        self.is_ready = False
-        self.restarts = 0
+        self.unconfirmed = Unconfirmed()  # Messages for the board. Who sends them notes them there.
+        self.is_ready = False  # The board is the right one; messages may pass.
+        self.restarts = 0  # How often the board has started again.
+        # Messages of the board that were dropped because it was not known to be the right one.
         self.held_back: int = before.held_back if before else 0
 
     # To the board.
@@ -152,16 +131,9 @@ class Session:
     def due(self, now: float, wall_ns: int) -> list[bytes]:
         """Return the frames of the request that is due, if there is one.
 
-        Parameters
-        ----------
-        now : float
-        wall_ns : int
-            Time of the host in ns since the epoch.
+        * `wall_ns`: time of the host in ns since the epoch.
 
-        Raises
-        ------
-        SilentBoardError
-            If the board has not answered for `silent_seconds`.
+        Raises `SilentBoardError` if the board has not answered for `silent_seconds`.
         """
         if now - self._heard > self._silent_seconds:
             raise SilentBoardError(f"no answer for {self._silent_seconds:g} s")
@@ -279,10 +251,7 @@ class Session:
     def take(self, frame: bytes, now: float, wall_ns: int) -> list[NodeMessage]:
         """Take a frame; return the messages for the graph that it sets free.
 
-        Raises
-        ------
-        WrongBoardError
-            If the board has another description.
+        Raises `WrongBoardError` if the board has another description.
         """
         arrivals, suspected_at = self._arrivals, self._arrivals.suspected_at
         try:

@@ -30,10 +30,7 @@ class Waiting:
 class MessageQueue:
     """Messages for the board, in order. Any thread puts, one takes.
 
-    Parameters
-    ----------
-    max_bytes : int
-        Limit of all packets together.
+    * `max_bytes`: limit of all packets together.
     """
 
     def __init__(self, max_bytes: int) -> None:
@@ -76,12 +73,7 @@ class Call:
 
 
 class Calls:
-    """Requests at the board, by their tags, in the order of their ends.
-
-    Parameters
-    ----------
-    most : int
-    """
+    """Requests at the board, by their tags, in the order of their ends."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -121,22 +113,14 @@ class Calls:
 class Retry:
     """When something that failed is tried again: soon at first, then less and less often.
 
-    Parameters
-    ----------
-    first, longest : float
-        Seconds.
-
-    Attributes
-    ----------
-    at : float
-        The time from which it may be tried.
+    * `first`, `longest`: seconds.
     """
 
     def __init__(self, first: float, longest: float) -> None:
         self._first, self._longest = first, longest
         self._pause = first
         self._why = ""
-        self.at = 0.0
+        self.at = 0.0  # The time from which it may be tried.
 
     def failed(self, now: float, why: str) -> bool:
         """Note that it was tried, or has ended; return whether the reason is another one."""

@@ -23,10 +23,7 @@ __all__ = ["HeaderInsert", "HeaderStrip", "frame_output", "header_beats"]
 def header_beats(bus_bytes: int) -> int:
     """Return the number of beats of a header.
 
-    Raises
-    ------
-    ValueError
-        If the header does not fill whole beats.
+    Raises `ValueError` if the header does not fill whole beats.
     """
     if HEADER_BYTES % bus_bytes:
         raise ValueError(f"Bus width must be at most {HEADER_BYTES} bytes, not {bus_bytes}")

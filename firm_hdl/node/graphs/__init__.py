@@ -40,20 +40,12 @@ def graph_of(
 ) -> Graph:
     """Make a graph, which is not yet joined.
 
-    Parameters
-    ----------
-    name : str or None
-        One of `GRAPHS`. `None`: that of the description's distribution.
-    domain : int or None
-        The domain of ROS 2; `None`: that of the environment.
-    interface : str or None
-        The network interface of `rtps`.
+    * `name`: one of `GRAPHS`. `None`: that of the description's distribution.
+    * `domain`: the domain of ROS 2; `None`: that of the environment.
+    * `interface`: the network interface of `rtps`.
 
-    Raises
-    ------
-    UserError
-        If the messages of the description are not those of the graph, the domain is none, or rospy
-        is missing.
+    Raises `UserError` if the messages of the description are not those of the graph, the domain is
+    none, or rospy is missing.
     """
     wire = description.wire
     if name is None:

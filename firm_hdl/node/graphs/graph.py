@@ -35,10 +35,7 @@ class GraphError(Exception):
 def domain_of(domain: int | None) -> int:
     """Return a domain of ROS 2; `None` is the environment's ``ROS_DOMAIN_ID``, or 0.
 
-    Raises
-    ------
-    UserError
-        If it is no number from 0 to 232.
+    Raises `UserError` if it is no number from 0 to 232.
     """
     name = "the domain" if domain is not None else "ROS_DOMAIN_ID"
     text = os.environ.get("ROS_DOMAIN_ID") or "0" if domain is None else str(domain)
@@ -51,18 +48,11 @@ class Graph(ABC):
     """A way to other nodes, under the name of the node that the board is.
 
     A packet is a serialized message as a converter has it, with the encapsulation header of CDR.
-
-    Attributes
-    ----------
-    name : str
-        For people.
-    counters : Counter of str
-        What the way itself lost, by cause.
     """
 
     def __init__(self, name: str) -> None:
-        self.name = name
-        self.counters: Counter[str] = Counter()
+        self.name = name  # For people.
+        self.counters: Counter[str] = Counter()  # What the way itself lost, by cause.
         # Lines for people, and whether each has been said.
         self._told: dict[str, bool] = {}
 
@@ -94,10 +84,7 @@ class Graph(ABC):
     def publish(self, topic: Topic, packet: bytes) -> bool:
         """Publish a message; return whether the graph has taken it.
 
-        Raises
-        ------
-        GraphError
-            If the graph is gone.
+        Raises `GraphError` if the graph is gone.
         """
 
     @abstractmethod

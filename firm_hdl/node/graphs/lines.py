@@ -23,11 +23,7 @@ class LinesGraph(Graph):
     hexadecimal; of a request and its response also `call`, any value of JSON. Other lines are
     counted by what is wrong with them. The end of the input ends the bridge, also without a board.
 
-    Parameters
-    ----------
-    description : Description
-    source, sink : text files
-        In place of standard input and output.
+    * `source`, `sink`: in place of standard input and output.
     """
 
     ends = True

@@ -15,21 +15,11 @@ __all__ = ["OwnEndpoint", "own_endpoints", "qos_of"]
 
 @dataclass(frozen=True, slots=True)
 class OwnEndpoint:
-    """An endpoint of the node.
+    """An endpoint of the node."""
 
-    Attributes
-    ----------
-    topic : Topic
-        Its topic or service.
-    writes : bool
-        Whether it sends: messages, or the responses of a service.
-    type_hash : str
-        That of its message.
-    """
-
-    topic: Topic
-    writes: bool
-    type_hash: str
+    topic: Topic  # Its topic or service.
+    writes: bool  # Whether it sends: messages, or the responses of a service.
+    type_hash: str  # That of its message.
 
     @property
     def name(self) -> str:
@@ -43,18 +33,11 @@ class OwnEndpoint:
     ) -> str | None:
         """Say in a line why an endpoint of a peer, on this topic, does not fit; `None` if it does.
 
-        Parameters
-        ----------
-        node : str
-            Full name of its node; empty if that is not known.
-        writes : bool
-            Whether it sends.
-        type_name : str
-            Name of its type, in ROS or on the wire.
-        hashed : str or None
-            Its type hash, where that is known.
-        qos : Qos
-            What it offers or asks for.
+        * `node`: full name of its node; empty if that is not known.
+        * `writes`: whether it sends.
+        * `type_name`: name of its type, in ROS or on the wire.
+        * `hashed`: its type hash, where that is known.
+        * `qos`: what it offers or asks for.
         """
         type_name = names.demangled_type(type_name) or type_name
         is_alike = writes == self.writes

@@ -36,14 +36,7 @@ class RospyGraph(FutureGraph):
     The master is that of the environment (``ROS_MASTER_URI``). If it ends or starts again, topics
     and services are registered anew. Callbacks run in threads of rospy, one per connection.
 
-    Parameters
-    ----------
-    description : Description
-
-    Raises
-    ------
-    UserError
-        If there is no rospy.
+    Raises `UserError` if there is no rospy.
     """
 
     def __init__(self, description: Description) -> None:

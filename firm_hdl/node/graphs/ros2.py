@@ -48,16 +48,9 @@ class RclpyGraph(Graph):
     The domain is that of the environment (``ROS_DOMAIN_ID``) unless it is given; the middleware is
     the environment's, too. The packages of all types have to be installed.
 
-    Parameters
-    ----------
-    description : Description
-    domain : int or None
-        As of :func:`.domain_of`.
+    * `domain`: as of :func:`.domain_of`.
 
-    Raises
-    ------
-    UserError
-        If the domain is none.
+    Raises `UserError` if the domain is none.
     """
 
     def __init__(self, description: Description, *, domain: int | None = None) -> None:

@@ -32,20 +32,11 @@ _ROOM_SECONDS = 0.1
 class RtpsGraph(FutureGraph):
     """A node in the graph of ROS 2 by :mod:`firm_hdl.rtps`.
 
-    Parameters
-    ----------
-    description : Description
-    domain : int or None
-        As of :func:`.domain_of`.
-    interface : str or None
-        As of :class:`firm_hdl.rtps.Participant`.
-    options
-        Further parameters of the participant.
+    * `domain`: as of :func:`.domain_of`.
+    * `interface`: as of :class:`firm_hdl.rtps.Participant`.
+    * `options`: further parameters of the participant.
 
-    Raises
-    ------
-    UserError
-        If the domain is none.
+    Raises `UserError` if the domain is none.
     """
 
     def __init__(

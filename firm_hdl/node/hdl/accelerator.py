@@ -42,10 +42,6 @@ class HdlAccelerator(wiring.Component):
 
     Attributes
     ----------
-    sources : Sources
-        Its files.
-    ports : tuple of AcceleratorPort
-        The plain ports, of the entity or of the wrapper around it.
     generated : Generated
         The wrapper, and packages, if the entity has records as ports.
 
@@ -63,7 +59,7 @@ class HdlAccelerator(wiring.Component):
     """
 
     def __init__(self, description: Description):
-        self.sources = Sources(description)
+        self.sources = Sources(description)  # Its files.
         self.hdl = self.sources.hdl
         check = checked_vhdl if self.hdl.language == "vhdl" else checked_verilog
         if self.hdl.has_records:
@@ -72,6 +68,7 @@ class HdlAccelerator(wiring.Component):
             wanted = accelerator_ports(description)
             found, self.generated = check(self.sources, wanted, {}), NO_FILES
         there = {port.name for port in found}
+        # The plain ports, of the entity or of the wrapper around it.
         self.ports: tuple[AcceleratorPort, ...] = tuple(
             port
             for port in accelerator_ports(description)
@@ -89,10 +86,7 @@ class HdlAccelerator(wiring.Component):
     def modules(self) -> Mapping[str, str]:
         """Verilog of the entity for a simulation, by file name.
 
-        Raises
-        ------
-        DefinitionError
-            If the VHDL has something that cannot be translated.
+        Raises `DefinitionError` if the VHDL has something that cannot be translated.
         """
         if self.hdl.language == "vhdl":
             text = verilog_of_vhdl(self.sources, self.ports, self.generated)

@@ -25,27 +25,18 @@ _TYPES = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcceleratorFiles:
-    """Files of a user's, as they are in the folder of a node.
+    """Files of a user's, as they are in the folder of a node."""
 
-    Attributes
-    ----------
-    language, entity : str
-        Empty if the accelerator is in Amaranth, or if there is none.
-    wrapper : str
-        The entity with plain ports around one with records; empty if there is none.
-    texts : mapping of str to str
-        Texts by path in the folder, in compile order. Bytes that are not UTF-8 are surrogates.
-    headers : mapping of str to str
-        Texts of files that those of Verilog include.
-    folders : mapping of str to str
-        The folder that an included file is named from, by the path of the file.
-    """
-
+    # Empty if the accelerator is in Amaranth, or if there is none.
     language: str = ""
     entity: str = ""
+    # The entity with plain ports around one with records; empty if there is none.
     wrapper: str = ""
+    # Texts by path in the folder, in compile order. Bytes that are not UTF-8 are surrogates.
     texts: Mapping[str, str] = field(default_factory=dict)
+    # Texts of files that those of Verilog include.
     headers: Mapping[str, str] = field(default_factory=dict)
+    # The folder that an included file is named from, by the path of the file.
     folders: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -89,10 +80,7 @@ def accelerator_files(accelerator: Any) -> AcceleratorFiles:
 
     Files keep their places towards each other, because those of Verilog include others by them.
 
-    Raises
-    ------
-    DefinitionError
-        If a file of Verilog includes another by an absolute path.
+    Raises `DefinitionError` if a file of Verilog includes another by an absolute path.
     """
     if not isinstance(accelerator, HdlAccelerator):
         return AcceleratorFiles()

@@ -18,29 +18,14 @@ __all__ = ["AcceleratorStream", "accelerator_streams", "by_message", "described"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcceleratorStream:
-    """A field of a message at an accelerator.
-
-    Attributes
-    ----------
-    topic : Topic
-    message : str
-        Name of the message, such as ``std_srvs/srv/Trigger_Request``.
-    member : str
-        The member of the accelerator, such as ``subscribe.cmd_vel.linear.x``.
-    direction : "in" or "out"
-        The way of its data.
-    type : str
-        What it carries, for people.
-    ports : tuple of AcceleratorPort
-        Data, perhaps `last`, then `valid` and `ready`.
-    """
+    """A field of a message at an accelerator."""
 
     topic: Topic
-    message: str
-    member: str
-    direction: Literal["in", "out"]
-    type: str
-    ports: tuple[AcceleratorPort, ...]
+    message: str  # Name of the message, such as `std_srvs/srv/Trigger_Request`.
+    member: str  # The member of the accelerator, such as `subscribe.cmd_vel.linear.x`.
+    direction: Literal["in", "out"]  # The way of its data.
+    type: str  # What it carries, for people.
+    ports: tuple[AcceleratorPort, ...]  # Data, perhaps `last`, then `valid` and `ready`.
 
     def port(self, name: str) -> AcceleratorPort | None:
         """Return a port by the last part of its member, such as ``valid``."""

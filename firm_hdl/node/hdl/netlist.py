@@ -45,17 +45,10 @@ _UNARY = {
 def verilog_of(circuit: Circuit, *, name: str, names: Mapping[str, str]) -> str:
     """Write a circuit as Verilog.
 
-    Parameters
-    ----------
-    name : str
-        Name of the module.
-    names : mapping of str to str
-        Names of ports by those of the circuit.
+    * `name`: name of the module.
+    * `names`: names of ports by those of the circuit.
 
-    Raises
-    ------
-    ProofError
-        If the circuit has a cell that is not known.
+    Raises `ProofError` if the circuit has a cell that is not known.
     """
     return "".join(f"{line}\n" for line in _Writer(circuit).lines(name, names))
 

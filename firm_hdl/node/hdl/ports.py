@@ -20,34 +20,18 @@ __all__ = ["AcceleratorPort", "accelerator_ports", "outer_ports"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcceleratorPort:
-    """A port of an accelerator: a plain vector, or a record.
-
-    Attributes
-    ----------
-    name : str
-    direction : "in" or "out"
-    width : int
-        Width in bits.
-    signed : bool
-        The bits are those of a signed number.
-    member : str
-        The member of the accelerator in Amaranth, such as ``subscribe.cmd_vel.linear.x.data``;
-        empty for clock and reset.
-    is_optional : bool
-        The accelerator may do without it.
-    type : str
-        The type of a record, with its package; empty for a plain vector.
-    parts : mapping of str to int
-        Widths of the fields of a record, such as ``linear.x.valid``, in order.
-    """
+    """A port of an accelerator: a plain vector, or a record."""
 
     name: str
     direction: Literal["in", "out"]
-    width: int
-    signed: bool = False
+    width: int  # Width in bits.
+    signed: bool = False  # The bits are those of a signed number.
+    # The member of the accelerator in Amaranth, such as `subscribe.cmd_vel.linear.x.data`; empty
+    # for clock and reset.
     member: str = ""
-    is_optional: bool = False
-    type: str = ""
+    is_optional: bool = False  # The accelerator may do without it.
+    type: str = ""  # The type of a record, with its package; empty for a plain vector.
+    # Widths of the fields of a record, such as `linear.x.valid`, in order.
     parts: Mapping[str, int] = field(default_factory=dict)
 
     @property

@@ -35,21 +35,12 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MessageRecord:
-    """A message of an accelerator: two ports with records.
+    """A message of an accelerator: two ports with records."""
 
-    Attributes
-    ----------
-    port : RecordPort
-        Its direction is that of a node: ``deserializer`` if the accelerator takes the message.
-    tree : Tree
-        The records, with the names of the language.
-    package : str
-        The package of the message in the language.
-    """
-
+    # Its direction is that of a node: `deserializer` if the accelerator takes the message.
     port: RecordPort
-    tree: Tree
-    package: str
+    tree: Tree  # The records, with the names of the language.
+    package: str  # The package of the message in the language.
 
     @property
     def is_taken(self) -> bool:
@@ -59,17 +50,10 @@ class MessageRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Generated:
-    """Files around those of the user's.
+    """Files around those of the user's."""
 
-    Attributes
-    ----------
-    entity : str
-        The outermost entity or module: that of the wrapper.
-    packages, wrapper : mapping of str to str
-        Texts by file name: those that compile before the files of the user's, and after them.
-    """
-
-    entity: str
+    entity: str  # The outermost entity or module: that of the wrapper.
+    # Texts by file name: those that compile before the files of the user's, and after them.
     packages: Mapping[str, str]
     wrapper: Mapping[str, str]
 
@@ -80,10 +64,7 @@ NO_FILES = Generated(entity="", packages={}, wrapper={})
 def message_records(description: Description, language: str) -> list[MessageRecord]:
     """List the messages of an accelerator in the order of topics.
 
-    Raises
-    ------
-    UserError
-        If two types would have one package.
+    Raises `UserError` if two types would have one package.
     """
     found = []
     is_vhdl = language == "vhdl"
@@ -163,10 +144,7 @@ def wrapped(
 ) -> Generated:
     """Write the entity or the module with plain ports around that of the user's.
 
-    Parameters
-    ----------
-    found : sequence of AcceleratorPort
-        The ports that the entity has.
+    * `found`: the ports that the entity has.
     """
     assert description.hdl is not None
     own = description.hdl.entity

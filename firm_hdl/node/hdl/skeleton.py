@@ -48,23 +48,13 @@ def new_accelerator(
 
     The description may already name the file.
 
-    Parameters
-    ----------
-    language : str or None
-        A key of `NEW_LANGUAGES`. `None`: what the description says, else ``"amaranth"``.
-    with_records : bool
-        Messages are ports of records or structs. The description may say so, too.
+    * `language`: a key of `NEW_LANGUAGES`. `None`: what the description says, else ``"amaranth"``.
+    * `with_records`: messages are ports of records or structs. The description may say so, too.
 
-    Returns
-    -------
-    str, str
-        The path of the file, and the value of `accelerator` that names it.
+    Returns: the path of the file, and the value of `accelerator` that names it.
 
-    Raises
-    ------
-    UserError
-        If the description names a file of another language, if there is such a file already, or if
-        it cannot be written.
+    Raises `UserError` if the description names a file of another language, if there is such a file
+    already, or if it cannot be written.
     """
     hdl = description.hdl
     said = hdl.language if hdl else "amaranth" if description.accelerator else None

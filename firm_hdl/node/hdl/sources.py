@@ -24,29 +24,16 @@ _LIBRARY = re.compile(r"^\S*/ieee\w*/(\w+?)(?:-body)?\.vhdl:\d+:\d+:", re.MULTIL
 class Sources:
     """The files of an accelerator, and the errors of tools in them.
 
-    Parameters
-    ----------
-    description : Description
-        With `hdl`.
+    * `description`: with `hdl`.
 
-    Attributes
-    ----------
-    hdl : Hdl
-    files : dict of str to bytes
-        By their names in the description, in compile order.
-    names : dict of str to str
-        These names by absolute paths.
-
-    Raises
-    ------
-    DefinitionError
-        At the name of each file in the description that cannot be read.
+    Raises `DefinitionError`: at the name of each file in the description that cannot be read.
     """
 
     def __init__(self, description: Description):
         assert description.hdl is not None
         self.description, self.hdl = description, description.hdl
-        self.files: dict[str, bytes] = {}
+        self.files: dict[str, bytes] = {}  # By their names in the description, in compile order.
+        # These names by absolute paths.
         self.names = {os.path.abspath(self.path_of(file)): file for file in self.hdl.files}
         problems = []
         for file in self.hdl.files:
@@ -78,10 +65,7 @@ class Sources:
     def problems_of(self, said: str, tool: str) -> DefinitionError:
         """Return the errors that a tool found in the user's files, each at its place.
 
-        Parameters
-        ----------
-        said : str
-            Output of the tool, which got absolute paths.
+        * `said`: output of the tool, which got absolute paths.
         """
         problems: list[Diagnostic] = []
         places: set[tuple[str, str]] = set()
@@ -125,10 +109,7 @@ class Sources:
     def places_of(self, names: Iterable[str]) -> dict[str, Span]:
         """Return where the entity declares its ports; at ``""``, the name of the entity itself.
 
-        Parameters
-        ----------
-        names : iterable of str
-            What is not found is not in the result.
+        * `names`: what is not found is not in the result.
         """
         is_vhdl = self.hdl.language == "vhdl"
         ignored = re.compile(r"--[^\n]*|/\*.*?\*/" if is_vhdl else r"//[^\n]*|/\*.*?\*/", re.DOTALL)
@@ -159,20 +140,11 @@ class Sources:
     ) -> tuple[AcceleratorPort, ...]:
         """Compare the ports of an entity with those that it must have.
 
-        Parameters
-        ----------
-        more_problems : mapping of str to str
-            What else is wrong with ports, by their names.
+        * `more_problems`: what else is wrong with ports, by their names.
 
-        Returns
-        -------
-        tuple of AcceleratorPort
-            Those of `wanted` that the entity has.
+        Returns: those of `wanted` that the entity has.
 
-        Raises
-        ------
-        DefinitionError
-            Each problem by itself, at the port, or else at the entity.
+        Raises `DefinitionError`: each problem by itself, at the port, or else at the entity.
         """
         entity = self.hdl.entity
         ignores_case = self.hdl.language == "vhdl"

@@ -118,9 +118,7 @@ def _own_problems(
 def preprocessed(sources: Sources, generated: Generated) -> tuple[str, dict[str, bytes]]:
     """Return all files as one text, and the files that they include, by absolute path.
 
-    Raises
-    ------
-    DefinitionError
+    Raises `DefinitionError`.
     """
     with tempfile.TemporaryDirectory(prefix="firm_hdl-") as name:
         folder = Path(name)
@@ -156,11 +154,8 @@ def _lint(
 ) -> tuple[str, str, bool]:
     """Let Verilator check the files with a module around them.
 
-    Returns
-    -------
-    str, str, bool
-        What Verilator says on errors, and on the module around them; all that it says; and whether
-        there is no error.
+    Returns: what Verilator says on errors, and on the module around them; all that it says; and
+    whether there is no error.
     """
     entity = sources.hdl.entity
     heads = [f"  {p.direction}put wire [{p.width - 1}:0] {p.name}" for p in ports]

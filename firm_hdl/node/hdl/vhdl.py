@@ -40,21 +40,12 @@ def checked_vhdl(
 ) -> tuple[AcceleratorPort, ...]:
     """Analyse files of VHDL-2008, and check the ports of the entity.
 
-    Parameters
-    ----------
-    packages : mapping of str to str
-        Texts of the packages with the types of records, by file name.
+    * `packages`: texts of the packages with the types of records, by file name.
 
-    Returns
-    -------
-    tuple of AcceleratorPort
-        Those of `wanted` that the entity has.
+    Returns: those of `wanted` that the entity has.
 
-    Raises
-    ------
-    DefinitionError
-        If the VHDL is wrong, cannot be synthesized, or has no such entity or other ports.
-    ProgramMissingError
+    Raises `ProgramMissingError`. Raises `DefinitionError` if the VHDL is wrong, cannot be
+    synthesized, or has no such entity or other ports.
     """
     entity = sources.hdl.entity
     files = Generated(entity=entity, packages=packages, wrapper={})
@@ -180,10 +171,7 @@ def verilog_of_vhdl(
 ) -> str:
     """Return the entity, or the wrapper around it, as a module of Verilog with two values.
 
-    Raises
-    ------
-    DefinitionError
-        If the netlist has something that cannot be translated.
+    Raises `DefinitionError` if the netlist has something that cannot be translated.
     """
     entity = generated.entity or sources.hdl.entity
     with tempfile.TemporaryDirectory(prefix="firm_hdl-") as folder:

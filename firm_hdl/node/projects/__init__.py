@@ -29,23 +29,12 @@ __all__ = ["BOARDS", "EXAMPLE", "ProjectBoard", "board_named", "write_project"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProjectBoard:
-    """A board, or boards that take the same files.
+    """A board, or boards that take the same files."""
 
-    Attributes
-    ----------
-    title : str
-        For people.
-    names : tuple of str
-        Other names of the board.
-    part : str
-        The chip, as Vivado names it.
-    files : tuple of str
-        Names of templates beside this module, in which ``NAME`` is that of the node.
-    """
-
-    title: str
-    names: tuple[str, ...]
-    part: str
+    title: str  # For people.
+    names: tuple[str, ...]  # Other names of the board.
+    part: str  # The chip, as Vivado names it.
+    # Names of templates beside this module, in which `NAME` is that of the node.
     files: tuple[str, ...]
 
 
@@ -99,25 +88,14 @@ def write_project(
 ) -> Path:
     """Write the project of a node into a new folder; return the folder.
 
-    Parameters
-    ----------
-    board : str
-        A key of `BOARDS`.
-    description : Description
-        Its link is `axi_dma`.
-    file : str or None
-        The description; `None`: it is `EXAMPLE`, which becomes ``node.yaml`` in the folder.
-    folder : path or None
-        `None`: ``NODE_BOARD``.
-    sample : sequence of bytes
-        Packets for the first subscription, of which a notebook sends one.
+    * `board`: a key of `BOARDS`.
+    * `description`: its link is `axi_dma`.
+    * `file`: the description; `None`: it is `EXAMPLE`, which becomes ``node.yaml`` in the folder.
+    * `folder`: `None` is ``NODE_BOARD``.
+    * `sample`: packets for the first subscription, of which a notebook sends one.
 
-    Raises
-    ------
-    DefinitionError
-        If the link is another one.
-    UserError
-        If the folder exists, or cannot be written.
+    Raises `DefinitionError` if the link is another one. Raises `UserError` if the folder exists, or
+    cannot be written.
     """
     if description.link.kind != "axi_dma":
         raise DefinitionError.of(

@@ -47,15 +47,9 @@ def notebook(
 ) -> dict[str, Any]:
     """Return a notebook (nbformat 4.5).
 
-    Parameters
-    ----------
-    description : Description
-    name : str
-        Of the files of the overlay.
-    file : str
-        The description, relative to the notebook. On the board, it is beside it.
-    sample : sequence of bytes
-        Packets of the first subscription. One with many values is sent.
+    * `name`: of the files of the overlay.
+    * `file`: the description, relative to the notebook. On the board, it is beside it.
+    * `sample`: packets of the first subscription. One with many values is sent.
     """
     cells: list[dict[str, Any]] = [
         {

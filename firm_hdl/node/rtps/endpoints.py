@@ -27,18 +27,10 @@ _SERVICE_QOS = Qos(depth=256)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Endpoint:
-    """A writer or a reader of the node.
+    """A writer or a reader of the node."""
 
-    Attributes
-    ----------
-    data : EndpointData
-        What it announces.
-    topic : Topic or None
-        `None` for the writer of the graph of ROS 2.
-    """
-
-    data: EndpointData
-    topic: Topic | None
+    data: EndpointData  # What it announces.
+    topic: Topic | None  # `None` for the writer of the graph of ROS 2.
 
     @property
     def is_service(self) -> bool:
@@ -48,21 +40,13 @@ class Endpoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Own:
-    """What a node announces.
-
-    Attributes
-    ----------
-    participant : ParticipantData
-    writers, readers : tuple of Endpoint
-        The first writer is that of the graph; the others are in the order of topics.
-    graph : bytes
-        The sample of the graph: the name of the node, and its endpoints.
-    """
+    """What a node announces."""
 
     participant: ParticipantData
+    # The first writer is that of the graph; the others are in the order of topics.
     writers: tuple[Endpoint, ...]
     readers: tuple[Endpoint, ...]
-    graph: bytes
+    graph: bytes  # The sample of the graph: the name of the node, and its endpoints.
 
 
 def ports_of_link(description: Description) -> Ports:

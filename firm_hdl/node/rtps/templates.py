@@ -103,15 +103,9 @@ class Job(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A datagram.
+    """A datagram."""
 
-    Attributes
-    ----------
-    words : tuple of int
-        As `op_layout` has them, without `last`.
-    """
-
-    words: tuple[int, ...]
+    words: tuple[int, ...]  # As `op_layout` has them, without `last`.
 
     @property
     def size(self) -> int:
@@ -121,17 +115,10 @@ class Template:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Templates:
-    """All datagrams of a node.
+    """All datagrams of a node."""
 
-    Attributes
-    ----------
-    every : tuple of Template
-        By number: those of `Job`, then those of endpoints.
-    writers, readers, graph : int
-        Numbers of the first announced writer, of the first announced reader, and of the graph.
-    """
-
-    every: tuple[Template, ...]
+    every: tuple[Template, ...]  # By number: those of `Job`, then those of endpoints.
+    # Numbers of the first announced writer, of the first announced reader, and of the graph.
     writers: int
     readers: int
     graph: int

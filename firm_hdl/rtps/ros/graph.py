@@ -48,18 +48,12 @@ GID_BYTES = (16, 24)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodeInfo:
-    """A node and its endpoints.
+    """A node and its endpoints."""
 
-    Attributes
-    ----------
-    name, namespace : str
-        Such as ``talker`` and ``/``.
-    readers, writers : tuple of Guid
-        The endpoints, those of services included.
-    """
-
+    # Such as `talker` and `/`.
     name: str
     namespace: str
+    # The endpoints, those of services included.
     readers: tuple[Guid, ...] = ()
     writers: tuple[Guid, ...] = ()
 

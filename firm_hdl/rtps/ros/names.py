@@ -31,17 +31,10 @@ _HASH_IN_DATA = re.compile(rb"(?:^|;)typehash=([^;]*)")
 def expanded(name: str, node: str, namespace: str) -> str:
     """Return the full name of a topic or service, such as ``/ns/chatter`` of ``chatter``.
 
-    Parameters
-    ----------
-    name : str
-        Relative (``chatter``), private (``~/chatter``) or full (``/chatter``).
-    node, namespace : str
-        Name and namespace of the node.
+    * `name`: relative (``chatter``), private (``~/chatter``) or full (``/chatter``).
+    * `node`, `namespace`: name and namespace of the node.
 
-    Raises
-    ------
-    ValueError
-        The name breaks the rules of ROS 2.
+    Raises `ValueError`: the name breaks the rules of ROS 2.
     """
     base = namespace.rstrip("/")
     if name.startswith("/"):
@@ -74,17 +67,11 @@ def reply_topic(full: str) -> str:
 def type_name(name: str, suffix: str = "") -> str:
     """Return a type's name on the wire, such as ``std_msgs::msg::dds_::String_``.
 
-    Parameters
-    ----------
-    name : str
-        Full name of a message or of a service, such as ``std_msgs/msg/String``.
-    suffix : str
-        ``"_Request"`` or ``"_Response"`` for the messages of a service.
+    * `name`: full name of a message or of a service, such as ``std_msgs/msg/String``.
+    * `suffix`: ``"_Request"`` or ``"_Response"`` for the messages of a service.
 
-    Raises
-    ------
-    ValueError
-        `name` is not ``package/msg/Name``, or ``srv`` or ``action`` instead of ``msg``.
+    Raises `ValueError`: `name` is not ``package/msg/Name``, or ``srv`` or ``action`` instead of
+    ``msg``.
     """
     match = _TYPE.fullmatch(name)
     if match is None:
@@ -107,15 +94,9 @@ def demangled_topic(name: str) -> str | None:
 def user_data(type_hash: str | None) -> bytes:
     """Return what an endpoint announces about its type.
 
-    Parameters
-    ----------
-    type_hash : str or None
-        Such as ``RIHS01_df668c...``. Peers warn about a wrong one, and not about none.
+    * `type_hash`: such as ``RIHS01_df668c...``. Peers warn about a wrong one, and not about none.
 
-    Raises
-    ------
-    ValueError
-        It does not begin with ``RIHS`` and a version.
+    Raises `ValueError`: it does not begin with ``RIHS`` and a version.
     """
     if type_hash is None:
         return b""

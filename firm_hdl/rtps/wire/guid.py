@@ -51,18 +51,10 @@ _WRITER_WITH_KEY, _WRITER_NO_KEY, _READER_NO_KEY, _READER_WITH_KEY = 2, 3, 4, 7
 
 @dataclass(frozen=True, slots=True)
 class Guid:
-    """The name of a participant or of an endpoint.
+    """The name of a participant or of an endpoint."""
 
-    Attributes
-    ----------
-    prefix : bytes
-        12 bytes, which all entities of a participant share.
-    entity : int
-        The entity identifier: 32 bits, of which the lowest 8 are the kind.
-    """
-
-    prefix: bytes
-    entity: int
+    prefix: bytes  # 12 bytes, which all entities of a participant share.
+    entity: int  # The entity identifier: 32 bits, of which the lowest 8 are the kind.
 
     def __bytes__(self) -> bytes:
         return self.prefix + self.entity.to_bytes(4, "big")

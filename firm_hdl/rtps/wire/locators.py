@@ -31,17 +31,11 @@ class Address(NamedTuple):
 
 
 class Ports(NamedTuple):
-    """The well-known ports of a participant (9.6.1.1).
+    """The well-known ports of a participant (9.6.1.1)."""
 
-    Attributes
-    ----------
-    discovery_multicast : int
-        Port of SPDP announcements to the group, the same for all participants of a domain.
-    discovery, user : int
-        Unicast ports of discovery, and of user data.
-    """
-
+    # Port of SPDP announcements to the group, the same for all participants of a domain.
     discovery_multicast: int
+    # Unicast ports of discovery, and of user data.
     discovery: int
     user: int
 

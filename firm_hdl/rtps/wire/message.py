@@ -27,41 +27,22 @@ _PAD = 0x01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Received:
-    """A submessage with what the submessages before it say of it.
+    """A submessage with what the submessages before it say of it."""
 
-    Attributes
-    ----------
-    source : bytes
-        GUID prefix of the sender.
-    timestamp : int or None
-        Time of the sender in nanoseconds since 1970, where it gave one.
-    """
-
-    source: bytes
-    timestamp: int | None
+    source: bytes  # GUID prefix of the sender.
+    timestamp: int | None  # Time of the sender in nanoseconds since 1970, where it gave one.
     submessage: Submessage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Message:
-    """What a datagram has for one receiver.
+    """What a datagram has for one receiver."""
 
-    Attributes
-    ----------
-    source : bytes
-        GUID prefix in the header.
-    received : tuple of Received
-        The submessages for this receiver, without those that only interpret others.
-    unknown : int
-        How many submessages have a kind that is not known.
-    error : str or None
-        Why the rest of the datagram was not read.
-    """
-
-    source: bytes
+    source: bytes  # GUID prefix in the header.
+    # The submessages for this receiver, without those that only interpret others.
     received: tuple[Received, ...]
-    unknown: int
-    error: str | None
+    unknown: int  # How many submessages have a kind that is not known.
+    error: str | None  # Why the rest of the datagram was not read.
 
 
 def write(prefix: bytes, submessages: Iterable[Submessage], little: bool = True) -> bytes:
@@ -76,10 +57,7 @@ def read(datagram: bytes, receiver: bytes) -> Message:
     A submessage that is not valid makes the rest of the datagram invalid; what comes before counts
     (8.3.4.1). Nothing that a peer can send raises another error than the following.
 
-    Raises
-    ------
-    MalformedError
-        The datagram is none of RTPS, or of another major version.
+    Raises `MalformedError`: the datagram is none of RTPS, or of another major version.
     """
     if len(datagram) < _HEADER_BYTES or datagram[:4] != _MAGIC:
         raise MalformedError("no RTPS message")

@@ -55,18 +55,11 @@ class Pid:
 
 @dataclass(frozen=True, slots=True)
 class ParameterList:
-    """Parameters in the order of the wire.
+    """Parameters in the order of the wire."""
 
-    Attributes
-    ----------
-    items : tuple
-        Pairs of an identifier and the bytes of the value, without the sentinel.
-    little : bool
-        Whether integers in the values are little-endian.
-    """
-
+    # Pairs of an identifier and the bytes of the value, without the sentinel.
     items: tuple[tuple[int, bytes], ...]
-    little: bool = True
+    little: bool = True  # Whether integers in the values are little-endian.
 
     def first(self, pid: int) -> Cursor | None:
         """Return the first value of `pid`, or `None`."""
@@ -120,10 +113,7 @@ class ParameterList:
     def decode_payload(cls, payload: bytes) -> ParameterList:
         """Read a serialized payload.
 
-        Raises
-        ------
-        MalformedError
-            The payload has another representation, or no sentinel.
+        Raises `MalformedError`: the payload has another representation, or no sentinel.
         """
         little = _PL_CDR.get(payload[:2])
         if little is None:
@@ -133,10 +123,7 @@ class ParameterList:
     def related(self, vendor: bytes) -> SampleIdentity | None:
         """Return the sample that this one answers, by inline QoS (DDS-RPC 7.6.2).
 
-        Parameters
-        ----------
-        vendor : bytes
-            Vendor of the writer. Only Fast DDS and we have an identifier of Fast DDS.
+        * `vendor`: vendor of the writer. Only Fast DDS and we have an identifier of Fast DDS.
         """
         own = (Pid.FAST_DDS_SAMPLE_IDENTITY,) if vendor in (_FAST_DDS, VENDOR) else ()
         for pid in (Pid.RELATED_SAMPLE_IDENTITY, *own):
