@@ -78,7 +78,10 @@ MAY_IMPORT["covering"] = {
 MAY_IMPORT["cases"] = {"metrics", "model", "plan", "sim", "wire"}
 MAY_IMPORT["verify"] = {
     "cases",
-    *(MAY_IMPORT["export"] - {"estimates", "metrics", "program", "registers", "rtlil", "timing"}),
+    *(
+        MAY_IMPORT["export"]
+        - {"estimates", "garbage", "metrics", "program", "registers", "rtlil", "timing"}
+    ),
     *("arguments", "export", "node", "recordings", "terminal"),
 }
 MAY_IMPORT["equivalence"] = {

@@ -24,7 +24,6 @@ from firm_hdl.arguments import (
 from firm_hdl.errors import Diagnostic, UserError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
-from firm_hdl.garbage import search_rarely
 from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.node import Description
 from firm_hdl.plan import BUS_BYTES
@@ -67,7 +66,6 @@ def run_verify(given: argparse.Namespace) -> int:
     Raises `DefinitionError` if a definition that is named cannot be used. Without names, the usable
     types are tested, and the errors in the others are printed at the end.
     """
-    search_rarely()
     request = _request(given)
     stage("verify: reads definitions")
     try:
