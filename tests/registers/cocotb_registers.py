@@ -44,7 +44,7 @@ ID, FINGERPRINT, CONTROL, STATUS, ENABLE, EVENTS, MESSAGES = 0, 8, 0x10, 0x14, 0
 WORDS = 0x40
 END = WORDS + -(-SIZE // 4) * 4
 COMMIT, LATCH, RESET = 1, 2, 4
-STREAMS = ("rx_s_axis", "tx_m_axis", "node_s_axis", "node_m_axis")
+STREAMS = {"rx": ["s_axis"], "tx": ["m_axis"], "node": ["s_axis", "m_axis"]}
 NODE = {each["name"]: each for each in json.loads(os.environ["NODE"])}
 AT = {name: each["address"] for name, each in NODE.items()}
 SET_TIME, SET_RATE = 1, 8
@@ -86,36 +86,29 @@ def pauses(seed):
         yield chosen.random() < 0.4
 
 
-async def begin(dut):
-    """Start the clock; return a master, a source of packets and a sink of each design."""
-    cocotb.start_soon(Clock(dut.aclk, 10, "ns").start())
-    reset = {"reset": dut.aresetn, "reset_active_level": False}
-    masters = {}
-    for number, side in enumerate(("rx", "tx", "node")):
-        bus = AxiLiteBus.from_prefix(dut, f"{side}_s_axi")
-        masters[side] = master = AxiLiteMaster(bus, dut.aclk, **reset)
-        write, read = master.write_if, master.read_if
-        channels = [write.aw_channel, write.w_channel, write.b_channel]
-        channels += [read.ar_channel, read.r_channel]
-        for each, channel in enumerate(channels):
-            channel.set_pause_generator(pauses(10 * number + each))
-    buses = {each: AxiStreamBus.from_prefix(dut, each) for each in STREAMS}
-    ends = {
-        each: (AxiStreamSource if "_s_" in each else AxiStreamSink)(bus, dut.aclk, **reset)
-        for each, bus in buses.items()
-    }
-    for number, each in enumerate(ends.values()):
-        each.set_pause_generator(pauses(30 + number))
-    dut.aresetn.value = 0
-    await ClockCycles(dut.aclk, 3)
-    assert not any(
-        getattr(dut, f"{side}_s_axi_{name}").value
-        for side in masters
-        for name in ("bvalid", "rvalid")
-    )
-    dut.aresetn.value = 1
-    await RisingEdge(dut.aclk)
-    return {**masters, **ends}
+async def begin(dut, side):
+    """Start the clock of a design; return the clock, a master, and its sources and sinks."""
+    clock, resetn = getattr(dut, f"{side}_aclk"), getattr(dut, f"{side}_aresetn")
+    cocotb.start_soon(Clock(clock, 10, "ns").start())
+    reset = {"reset": resetn, "reset_active_level": False}
+    bus = AxiLiteBus.from_prefix(dut, f"{side}_s_axi")
+    master = AxiLiteMaster(bus, clock, **reset)
+    write, read = master.write_if, master.read_if
+    channels = [write.aw_channel, write.w_channel, write.b_channel]
+    channels += [read.ar_channel, read.r_channel]
+    ends = []
+    for name in STREAMS[side]:
+        stream = AxiStreamBus.from_prefix(dut, f"{side}_{name}")
+        end = AxiStreamSource if name == "s_axis" else AxiStreamSink
+        ends.append(end(stream, clock, **reset))
+    for number, each in enumerate([*channels, *ends]):
+        each.set_pause_generator(pauses(number))
+    resetn.value = 0
+    await ClockCycles(clock, 3)
+    assert not any(getattr(dut, f"{side}_s_axi_{name}").value for name in ("bvalid", "rvalid"))
+    resetn.value = 1
+    await RisingEdge(clock)
+    return clock, master, *ends
 
 
 async def word(master, address):
@@ -168,7 +161,7 @@ async def transfer_at_random(master, held, bits, free, known):
 
 @cocotb.test()
 async def any_transfers(dut):
-    tx = (await begin(dut))["tx"]
+    _, tx, _ = await begin(dut, "tx")
     held = bytearray(END)
     # Bits that can be written: of a bool the lowest one, and none of the padding.
     bits = bytearray(END)
@@ -195,7 +188,7 @@ async def any_transfers(dut):
 
 @cocotb.test()
 async def any_transfers_with_a_node(dut):
-    node = (await begin(dut))["node"]
+    _, node, *_ = await begin(dut, "node")
     end = max(AT.values()) + 4
     held, bits = bytearray(end), bytearray(end)
     for each in NODE.values():
@@ -217,8 +210,7 @@ async def any_transfers_with_a_node(dut):
 @cocotb.test()
 async def node_is_seen(dut):
     """Counters, interrupt and clock of a node, and its reset."""
-    ends = await begin(dut)
-    node, source, sink = ends["node"], ends["node_s_axis"], ends["node_m_axis"]
+    clock, node, source, sink = await begin(dut, "node")
     sender = MessageSender()
 
     async def send(*packets, topic=1):
@@ -226,7 +218,7 @@ async def node_is_seen(dut):
             for frame in sender.frames(NodeMessage(topic=topic, packet=packet)):
                 await source.send(AxiStreamFrame(frame))
         await with_timeout(source.wait(), 100, "us")
-        await ClockCycles(dut.aclk, 200)
+        await ClockCycles(clock, 200)
 
     async def latched(*names):
         await put(node, CONTROL, LATCH)
@@ -242,7 +234,7 @@ async def node_is_seen(dut):
 
     async def check_rate(rate):
         a, first, then = await now()
-        await ClockCycles(dut.aclk, 100)
+        await ClockCycles(clock, 100)
         b, later, last = await now()
         assert (later - then) * rate <= b - a <= (last - first) * rate
 
@@ -254,10 +246,10 @@ async def node_is_seen(dut):
         await send(*packets)
         assert await word(node, EVENTS) == 3 - enabled and dut.node_irq.value == 0
         await put(node, ENABLE, 3)
-        await ClockCycles(dut.aclk, 2)
+        await ClockCycles(clock, 2)
         assert dut.node_irq.value == 1
         await put(node, EVENTS, 3)
-        await ClockCycles(dut.aclk, 2)
+        await ClockCycles(clock, 2)
         assert dut.node_irq.value == 0
     assert [await word(node, AT[name]) for name in names] == [0] * 6
     assert await latched(*names) == [3, 1, 3, 15, 0, 4]
@@ -305,8 +297,7 @@ async def node_is_seen(dut):
 
 @cocotb.test()
 async def messages_are_sent(dut):
-    ends = await begin(dut)
-    tx, sink = ends["tx"], ends["tx_m_axis"]
+    clock, tx, sink = await begin(dut, "tx")
     chosen, sent = random.Random(2), []
     await put(tx, ENABLE, 1)
     for _ in range(ROUNDS // 20):
@@ -327,7 +318,7 @@ async def messages_are_sent(dut):
         assert bytes(frame.tdata) == expected
     assert dut.tx_irq.value == 1
     await put(tx, EVENTS, 1)
-    await ClockCycles(dut.aclk, 3)
+    await ClockCycles(clock, 3)
     assert dut.tx_irq.value == 0
     # The sink is full, so a commit finds the serializer busy.
     sink.clear_pause_generator()
@@ -348,7 +339,7 @@ async def messages_are_sent(dut):
         expected = packet(struct.unpack(FORM, data))
         assert bytes((await with_timeout(sink.recv(), 100, "us")).tdata) == expected
     assert skipped >= busy and errors == 0 and done <= len(sent) + 12 - skipped
-    await ClockCycles(dut.aclk, 50)
+    await ClockCycles(clock, 50)
     assert sink.empty()
     # A reset clears registers, and messages go on.
     await put(tx, CONTROL, RESET)
@@ -362,14 +353,13 @@ async def messages_are_sent(dut):
 
 @cocotb.test()
 async def messages_are_shown(dut):
-    ends = await begin(dut)
-    rx, source = ends["rx"], ends["rx_s_axis"]
+    clock, rx, source = await begin(dut, "rx")
     chosen = random.Random(3)
 
     async def send(data):
         await source.send(AxiStreamFrame(data))
         await with_timeout(source.wait(), 100, "us")
-        await ClockCycles(dut.aclk, 20)
+        await ClockCycles(clock, 20)
 
     async def shown():
         got = await with_timeout(rx.read(WORDS, END - WORDS), 100, "us")

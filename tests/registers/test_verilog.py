@@ -6,7 +6,7 @@ import json
 import os
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -15,9 +15,12 @@ import pytest
 from firm_hdl.export.backend import Converters
 from firm_hdl.export.registers import register_circuits, register_maps, write
 from firm_hdl.frontend import Library
-from firm_hdl.node import read_description
-from firm_hdl.node.build import build_node
+from firm_hdl.garbage import search_put_off
+from firm_hdl.node import Node, read_description_text
+from firm_hdl.node.register_map import register_map
+from firm_hdl.node.top import NodeTop, node_ports
 from firm_hdl.plan import build_plan
+from firm_hdl.verilog import convert
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.tools import need
@@ -60,9 +63,9 @@ print(f"{tests} tests, {failed} failed")
 
 def bench_of(sections) -> str:
     """Write a module with all designs, and their ports behind a prefix."""
-    outer, inner = ["input aclk", "input aresetn"], []
+    outer, inner = [], []
     for side, section in sections.items():
-        ports = [port for port in section["ports"] if port["name"] not in ("aclk", "aresetn")]
+        ports = section["ports"]
         for port in ports:
             way, high = f"{port['direction']}put", port["width"] - 1
             outer.append(
@@ -71,7 +74,7 @@ def bench_of(sections) -> str:
                 else f"{way} {side}_{port['name']}"
             )
         joined = ", ".join(f".{port['name']}({side}_{port['name']})" for port in ports)
-        inner.append(f"{section['module']} {side} (.aclk(aclk), .aresetn(aresetn), {joined});")
+        inner.append(f"{section['module']} {side} ({joined});")
     return f"module bench ({', '.join(outer)});\n" + "\n".join(inner) + "\nendmodule\n"
 
 
@@ -93,11 +96,15 @@ def test_registers_behave_under_random_transfers(tmp_path):
     sections = {side: output.manifest["registers"][each] for side, each in way.items()}
     work = tmp_path / "work"
     work.mkdir()
-    (tmp_path / "mirror.yaml").write_text(NODE)
-    node = build_node(read_description(tmp_path / "mirror.yaml"), tmp_path)
-    manifest = json.loads((node.folder / "manifest.json").read_text())
-    sections["node"] = {**manifest, "module": "mirror_verilog", "verilog": "mirror_verilog.v"}
-    output.files["mirror_verilog.v"] = (node.folder / "mirror_verilog.v").read_text()
+    description = read_description_text(NODE)
+    node = Node(description)
+    sections["node"] = {
+        "module": "mirror",
+        "verilog": "mirror.v",
+        "ports": [asdict(port) for port in node_ports(node)],
+    }
+    with search_put_off():
+        output.files["mirror.v"] = convert(NodeTop(node), name="mirror")
     (work / "bench.v").write_text(bench_of(sections))
     for each in sections.values():
         (work / each["verilog"]).write_text(output.files[each["verilog"]])
@@ -115,7 +122,7 @@ def test_registers_behave_under_random_transfers(tmp_path):
             "ROUNDS": str(by_depth(100, 100_000)),
             "DEFINITION": str(definition),
             "FINGERPRINT": str(high << 32 | low),
-            "NODE": json.dumps(manifest["bus_registers"]["registers"]),
+            "NODE": json.dumps([asdict(each) for each in register_map(description).registers]),
         },
         capture_output=True,
         text=True,
