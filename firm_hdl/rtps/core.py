@@ -54,23 +54,16 @@ _MAX_EVENTS, _MAX_EVENT_BYTES = 1 << 16, 64 << 20
 
 
 class Core:
-    """A participant.
-
-    Attributes
-    ----------
-    outbox : deque
-        Datagrams to send, in this order: pairs of an address and bytes.
-    events : deque
-        What happened, oldest first. :meth:`next_event` removes them.
-    counters : Counter
-        What came and what became of it; the page docs/explanation/rtps.md explains each.
-    """
+    """A participant."""
 
     def __init__(self, settings: Settings):
         self.settings = settings
         self.prefix = settings.own.prefix
+        # Datagrams to send, in this order: pairs of an address and bytes.
         self.outbox: deque[tuple[Address, bytes]] = deque()
+        # What happened, oldest first. `next_event` removes them.
         self.events: deque[Event] = deque()
+        # What came and what became of it; the page docs/explanation/rtps.md explains each.
         self.counters: Counter[str] = Counter()
         self._outbox_bytes = 0
         # Of which so many to each address.
@@ -159,10 +152,8 @@ class Core:
     ) -> int:
         """Write a sample, and return its sequence number.
 
-        Raises
-        ------
-        HistoryFullError
-            The writer keeps all samples, and readers have acknowledged too little.
+        Raises `HistoryFullError`: the writer keeps all samples, and readers have acknowledged too
+        little.
         """
         local = self._sedp.locals.get(writer.guid)
         beside = [] if local is None else [g for g in local.beside if to is None or g in to]
@@ -243,10 +234,7 @@ class Core:
     def pop(self) -> tuple[Address, bytes]:
         """Remove and return the next datagram to send.
 
-        Raises
-        ------
-        IndexError
-            There is none.
+        Raises `IndexError`: there is none.
         """
         address, datagram = self.outbox.popleft()
         self._outbox_bytes -= len(datagram)

@@ -33,33 +33,18 @@ _DEFAULT_LEASE = 100.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParticipantData:
-    """What a participant announces with SPDP (8.5.3.2).
-
-    Attributes
-    ----------
-    vendor : bytes
-        Two bytes.
-    discovery, user : tuple of Address
-        Unicast addresses of discovery, and of user data for endpoints without addresses.
-    lease : float
-        Seconds after which a silent participant is gone.
-    endpoints : int
-        Bits of the built-in endpoints that it has.
-    user_data : bytes
-        ROS 2 has its enclave here.
-    domain : int or None
-        The domain, where the participant says it.
-    """
+    """What a participant announces with SPDP (8.5.3.2)."""
 
     prefix: bytes
-    vendor: bytes = VENDOR
+    vendor: bytes = VENDOR  # Two bytes.
+    # Unicast addresses of discovery, and of user data for endpoints without addresses.
     discovery: tuple[Address, ...]
     user: tuple[Address, ...]
-    lease: float
-    endpoints: int = _BUILTIN_ENDPOINTS
-    user_data: bytes = b""
+    lease: float  # Seconds after which a silent participant is gone.
+    endpoints: int = _BUILTIN_ENDPOINTS  # Bits of the built-in endpoints that it has.
+    user_data: bytes = b""  # ROS 2 has its enclave here.
     name: str = ""
-    domain: int | None = None
+    domain: int | None = None  # The domain, where the participant says it.
 
     def has(self, bit: int) -> bool:
         """Whether it has the built-in endpoint of a bit of BuiltinEndpointSet_t."""
@@ -114,26 +99,16 @@ class ParticipantData:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndpointData:
-    """What a participant announces about a writer or a reader with SEDP (8.5.4.2).
-
-    Attributes
-    ----------
-    topic, type_name : str
-        Names, of which both have to be equal for two endpoints to match.
-    qos : Qos
-        Policies that it offers or asks for.
-    addresses : tuple of Address
-        Where to send its samples or acknowledgements. None means where the participant says.
-    user_data : bytes
-        ROS 2 has its type hash here.
-    """
+    """What a participant announces about a writer or a reader with SEDP (8.5.4.2)."""
 
     guid: Guid
+    # Names, of which both have to be equal for two endpoints to match.
     topic: str
     type_name: str
-    qos: Qos
+    qos: Qos  # Policies that it offers or asks for.
+    # Where to send its samples or acknowledgements. None means where the participant says.
     addresses: tuple[Address, ...] = ()
-    user_data: bytes = b""
+    user_data: bytes = b""  # ROS 2 has its type hash here.
 
     def encode(self) -> bytes:
         """Return the payload of its announcement, little-endian."""
@@ -176,10 +151,7 @@ class EndpointData:
 def check_owner(prefix: bytes, source: bytes) -> None:
     """Check that a participant announces, or ends, only what is its own.
 
-    Raises
-    ------
-    MalformedError
-        The GUID prefix of what it speaks of is not that of `source`.
+    Raises `MalformedError`: the GUID prefix of what it speaks of is not that of `source`.
     """
     if prefix != source:
         raise MalformedError(f"an announcement of {prefix.hex()} by {source.hex()}")

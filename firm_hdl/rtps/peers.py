@@ -34,29 +34,14 @@ Ways: TypeAlias = tuple[tuple[Address, ...], bool]
 
 @dataclass(slots=True)
 class Peer:
-    """A participant that was found.
+    """A participant that was found."""
 
-    Attributes
-    ----------
-    data : ParticipantData
-        What it says of itself, as of its last announcement.
-    here : str
-        Our IPv4 address.
-    host : str or None
-        Where its first announcement came from, if that is known.
-    heard_at : float
-        When it last said anything.
-    credit : float
-        Bytes that it may cost. It may fall below 0 with one datagram.
-    answered_at, again_at : float
-        When it was last told of us, and when that is repeated.
-    """
-
-    data: ParticipantData
-    here: str
-    host: str | None
-    heard_at: float = float("-inf")
-    credit: float = 0.0
+    data: ParticipantData  # What it says of itself, as of its last announcement.
+    here: str  # Our IPv4 address.
+    host: str | None  # Where its first announcement came from, if that is known.
+    heard_at: float = float("-inf")  # When it last said anything.
+    credit: float = 0.0  # Bytes that it may cost. It may fall below 0 with one datagram.
+    # When it was last told of us, and when that is repeated.
     answered_at: float = float("-inf")
     again_at: float = float("inf")
     _way: str | None = None
@@ -129,19 +114,11 @@ class Peer:
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """The way to the endpoints of a peer.
-
-    Attributes
-    ----------
-    own : tuple of Address
-        Addresses of the endpoint itself, if it names any.
-    discovery : bool
-        Whether it is a built-in endpoint of discovery.
-    """
+    """The way to the endpoints of a peer."""
 
     peer: Peer
-    own: tuple[Address, ...] = ()
-    discovery: bool = False
+    own: tuple[Address, ...] = ()  # Addresses of the endpoint itself, if it names any.
+    discovery: bool = False  # Whether it is a built-in endpoint of discovery.
 
     def ways(self) -> Ways:
         """Return where to send, and whether that is known to be the peer's; see `Peer.ways`."""
@@ -151,21 +128,13 @@ class Route:
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """One datagram.
-
-    Attributes
-    ----------
-    prefix : bytes
-        GUID prefix of the participant that it is for.
-    submessages : tuple
-        Its content, without the INFO_DST that names the participant.
-    is_answer : bool
-        Whether the peer has made us send it, so that it costs credit (:mod:`firm_hdl.rtps.peers`).
-    """
+    """One datagram."""
 
     route: Route
-    prefix: bytes
+    prefix: bytes  # GUID prefix of the participant that it is for.
+    # Its content, without the INFO_DST that names the participant.
     submessages: tuple[Submessage, ...]
+    # Whether the peer has made us send it, so that it costs credit (`firm_hdl.rtps.peers`).
     is_answer: bool = True
 
 

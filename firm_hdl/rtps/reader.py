@@ -89,20 +89,10 @@ class _Proxy:
 class Reader:
     """A reader, best-effort or reliable. Samples of a reliable writer come in order.
 
-    Parameters
-    ----------
-    budget : Budget
-        Memory for fragments, and for samples that wait for earlier ones.
-    most_bytes : int
-        The largest sample that it takes in fragments.
-    counters : Counter
-        Counts samples and fragments that were ``refused``: too large, too far ahead, without
-        memory; and writers that ``restarted``.
-
-    Attributes
-    ----------
-    lost : int
-        How many samples did not come, and will not.
+    * `budget`: memory for fragments, and for samples that wait for earlier ones.
+    * `most_bytes`: the largest sample that it takes in fragments.
+    * `counters`: counts samples and fragments that were ``refused``: too large, too far ahead,
+      without memory; and writers that ``restarted``.
     """
 
     def __init__(
@@ -124,7 +114,7 @@ class Reader:
         self._counters = Counter[str]() if counters is None else counters
         self._proxies: dict[Guid, _Proxy] = {}
         self._count = 0
-        self.lost = 0
+        self.lost = 0  # How many samples did not come, and will not.
 
     @property
     def matched(self) -> tuple[Guid, ...]:
@@ -200,11 +190,8 @@ class Reader:
     def on_heartbeat(self, writer: Guid, heartbeat: Heartbeat, now: float) -> bool:
         """Take a HEARTBEAT (8.4.12.2): what is lost for good, and what can be asked for.
 
-        Returns
-        -------
-        bool
-            Whether the writer began anew: its last number went back. Of a heartbeat that is late,
-            it did so, too; but then, others came in the last second.
+        Returns: whether the writer began anew: its last number went back. Of a heartbeat that is
+        late, it did so, too; but then, others came in the last second.
         """
         proxy = self._proxies.get(writer)
         if proxy is None:

@@ -45,29 +45,18 @@ _SPACE_BYTES, _ENDPOINT_BYTES = 32 << 20, 1000
 
 @dataclass(slots=True)
 class Local:
-    """An endpoint of the user.
-
-    Attributes
-    ----------
-    data : EndpointData
-        What is announced about it.
-    number : int
-        Sequence number of the announcement.
-    matched, refused : dict
-        Endpoints of peers that fit, and policies that do not. Those of this participant that fit
-        are in `matched`, too.
-    beside : dict
-        Endpoints of this participant that fit.
-    matches : Counter
-        How many endpoints of each participant fit.
-    """
+    """An endpoint of the user."""
 
     endpoint: Writer | Reader
-    data: EndpointData
-    number: int = 0
+    data: EndpointData  # What is announced about it.
+    number: int = 0  # Sequence number of the announcement.
+    # Endpoints of peers that fit, and policies that do not. Those of this participant that fit are
+    # in `matched`, too.
     matched: dict[Guid, EndpointData] = field(default_factory=dict)
     refused: dict[Guid, tuple[str, ...]] = field(default_factory=dict)
+    # Endpoints of this participant that fit.
     beside: dict[Guid, Local] = field(default_factory=dict)
+    # How many endpoints of each participant fit.
     matches: Counter[bytes] = field(default_factory=Counter)
 
     @property
@@ -94,15 +83,10 @@ class _Known:
 class Sedp:
     """The built-in endpoints of SEDP, and the endpoints of this and of other participants.
 
-    Parameters
-    ----------
-    budget : Budget
-        Memory for announcements that are not complete.
-    events : deque
-        Takes what happened.
-    counters : Counter
-        Counts announcements that are ``malformed``, endpoints that are ``not_kept``, and those that
-        fit, but are ``not_matched``: their participant has too many.
+    * `budget`: memory for announcements that are not complete.
+    * `events`: takes what happened.
+    * `counters`: counts announcements that are ``malformed``, endpoints that are ``not_kept``, and
+      those that fit, but are ``not_matched``: their participant has too many.
     """
 
     def __init__(

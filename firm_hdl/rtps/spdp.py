@@ -24,33 +24,17 @@ __all__ = ["DISPOSED", "Settings", "Spdp"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """What a participant is and does.
+    """What a participant is and does."""
 
-    Attributes
-    ----------
-    own : ParticipantData
-        What it announces.
-    host : str
-        Its IPv4 address.
-    targets : tuple of Address
-        Where announcements go, besides known peers.
-    seldom : tuple of Address
-        Where they go at first, and seldom after that: addresses where a peer may be.
-    period : float
-        Seconds between announcements.
-    fragment_bytes : int
-        Larger samples are sent in fragments of this size: from 256 to 65,000.
-    memory_bytes : int
-        Memory for samples that cannot be delivered yet.
-    """
-
-    own: ParticipantData
-    host: str
-    targets: tuple[Address, ...]
+    own: ParticipantData  # What it announces.
+    host: str  # Its IPv4 address.
+    targets: tuple[Address, ...]  # Where announcements go, besides known peers.
+    # Where they go at first, and seldom after that: addresses where a peer may be.
     seldom: tuple[Address, ...] = ()
-    period: float = 1.0
+    period: float = 1.0  # Seconds between announcements.
+    # Larger samples are sent in fragments of this size: from 256 to 65,000.
     fragment_bytes: int = FRAGMENT_BYTES
-    memory_bytes: int = 128 << 20
+    memory_bytes: int = 128 << 20  # Memory for samples that cannot be delivered yet.
 
     def __post_init__(self) -> None:
         if not 256 <= self.fragment_bytes <= 65_000:
@@ -91,12 +75,9 @@ Tell: TypeAlias = Callable[[Address, Data], None]
 class Spdp:
     """The announcer of a participant, and the participants that it heard of.
 
-    Parameters
-    ----------
-    listener : Sedp
-        Who is told of peers, and knows how much each one is to us.
-    counters : Counter
-        Counts announcements that got ``no_place``, and peers that were ``displaced`` by others.
+    * `listener`: who is told of peers, and knows how much each one is to us.
+    * `counters`: counts announcements that got ``no_place``, and peers that were ``displaced`` by
+      others.
     """
 
     def __init__(
@@ -147,10 +128,7 @@ class Spdp:
     def on_data(self, source: bytes, data: Data, host: str | None, now: float) -> None:
         """Take an announcement, or the news that a participant leaves (8.5.3.3).
 
-        Raises
-        ------
-        MalformedError
-            It is not valid, or is about another participant.
+        Raises `MalformedError`: it is not valid, or is about another participant.
         """
         if data.payload is None or data.key:
             gone = key_of(data.payload, data.inline, Pid.PARTICIPANT_GUID)

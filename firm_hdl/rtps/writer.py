@@ -67,22 +67,13 @@ class HistoryFullError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A sample in the history (CacheChange, 8.2.3).
-
-    Attributes
-    ----------
-    timestamp : int or None
-        Nanoseconds since 1970.
-    to : collection of Guid or None
-        The readers that it is for; by default all.
-    passing : bool
-        Whether it is kept until readers of today have it, even if others may come: the end of an
-        instance.
-    """
+    """A sample in the history (CacheChange, 8.2.3)."""
 
     data: Data
-    timestamp: int | None
-    to: Collection[Guid] | None = None
+    timestamp: int | None  # Nanoseconds since 1970.
+    to: Collection[Guid] | None = None  # The readers that it is for; by default all.
+    # Whether it is kept until readers of today have it, even if others may come: the end of an
+    # instance.
     passing: bool = False
 
     @property
@@ -145,20 +136,9 @@ class _Proxy:
 class Writer:
     """A writer, best-effort or reliable.
 
-    Parameters
-    ----------
-    fragment_bytes : int
-        Samples with more bytes are sent in fragments of this size.
-    counters : Counter
-        Counts samples that were ``overwritten`` before all readers had them, readers that were
-        ``left_behind``, and samples or fragments that were asked for and ``withheld``.
-
-    Attributes
-    ----------
-    last : int
-        Sequence number of the last sample.
-    overwritten : int
-        How many samples gave way to new ones before all reliable readers had acknowledged them.
+    * `fragment_bytes`: samples with more bytes are sent in fragments of this size.
+    * `counters`: counts samples that were ``overwritten`` before all readers had them, readers that
+      were ``left_behind``, and samples or fragments that were asked for and ``withheld``.
     """
 
     def __init__(
@@ -179,7 +159,8 @@ class Writer:
         self._size = 0
         self._proxies: dict[Guid, _Proxy] = {}
         self._count = 0
-        self.last = 0
+        self.last = 0  # Sequence number of the last sample.
+        # How many samples gave way to new ones before all reliable readers had acknowledged them.
         self.overwritten = 0
 
     @property
@@ -202,21 +183,13 @@ class Writer:
     ) -> int:
         """Add a sample to the history, send it to its readers, and return its sequence number.
 
-        Parameters
-        ----------
-        payload : bytes or None
-            The sample with its encapsulation header; with `key`, the key of an instance that ends.
-        now : float
-            The time, in seconds of any clock that never goes back.
-        timestamp : int or None
-            Nanoseconds since 1970, for the readers.
-        to : collection of Guid or None
-            The readers that it is for; by default all.
+        * `payload`: the sample with its encapsulation header; with `key`, the key of an instance
+          that ends.
+        * `now`: the time, in seconds of any clock that never goes back.
+        * `timestamp`: nanoseconds since 1970, for the readers.
+        * `to`: the readers that it is for; by default all.
 
-        Raises
-        ------
-        HistoryFullError
-            The depth is 0, and readers have acknowledged too little.
+        Raises `HistoryFullError`: the depth is 0, and readers have acknowledged too little.
         """
         self._make_room(now)
         self.last += 1
@@ -291,11 +264,8 @@ class Writer:
     def on_ack_nack(self, reader: Guid, answer: AckNack, now: float) -> bool:
         """Take an ACKNACK (8.4.9.2): what it acknowledges, and what it misses.
 
-        Returns
-        -------
-        bool
-            Whether the reader began anew: it misses what it once had. Of an answer that is late,
-            it does so, too; but then, others came in the last second.
+        Returns: whether the reader began anew: it misses what it once had. Of an answer that is
+        late, it does so, too; but then, others came in the last second.
         """
         proxy = self._proxies.get(reader)
         if proxy is None or not proxy.reliable or answer.count == proxy.last_count:
@@ -486,10 +456,7 @@ class Writer:
     ) -> bool:
         """Send a sample, or fragments of it, that a reader asked for.
 
-        Returns
-        -------
-        bool
-            Whether at least a part of it could be sent.
+        Returns: whether at least a part of it could be sent.
         """
         size = len(change.data.payload or b"")
         if size > self._fragment_bytes or numbers is not None:

@@ -41,19 +41,10 @@ class BandCell:
 
 @dataclass(slots=True, kw_only=True)
 class Grid:
-    """Bytes in a row.
+    """Bytes in a row."""
 
-    Attributes
-    ----------
-    depth : int
-        Number of loops around the grid.
-    start : int or None
-        Offset in the packet; `None` after the first note.
-    cells : list of BandCell
-    """
-
-    depth: int
-    start: int | None
+    depth: int  # Number of loops around the grid.
+    start: int | None  # Offset in the packet; `None` after the first note.
     cells: list[BandCell] = field(default_factory=list)
 
 

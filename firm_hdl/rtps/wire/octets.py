@@ -26,12 +26,8 @@ def padded(value: bytes, alignment: int = 4) -> bytes:
 class Cursor:
     """A place in bytes, which moves forward as values are read.
 
-    Parameters
-    ----------
-    little : bool
-        Whether integers are little-endian.
-    at : int
-        Number of the first byte to read.
+    * `little`: whether integers are little-endian.
+    * `at`: number of the first byte to read.
     """
 
     __slots__ = ("at", "data", "little", "order")
@@ -50,10 +46,7 @@ class Cursor:
     def take(self, count: int) -> bytes:
         """Read `count` bytes.
 
-        Raises
-        ------
-        MalformedError
-            There are fewer bytes left.
+        Raises `MalformedError`: there are fewer bytes left.
         """
         end = self.at + count
         if count < 0 or end > len(self.data):

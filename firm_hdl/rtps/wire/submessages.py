@@ -82,17 +82,12 @@ class InfoSource:
 
 @dataclass(frozen=True, slots=True)
 class InfoTimestamp:
-    """INFO_TS: the time of the following submessages (8.3.8.11).
-
-    Attributes
-    ----------
-    nanoseconds : int or None
-        Time since 1970 in nanoseconds, or `None` for no time. The wire has seconds, unsigned, and
-        fractions of 2**-32 s (9.3.2).
-    """
+    """INFO_TS: the time of the following submessages (8.3.8.11)."""
 
     KIND: ClassVar[int] = 0x09
 
+    # Time since 1970 in nanoseconds, or `None` for no time. The wire has seconds, unsigned, and
+    # fractions of 2**-32 s (9.3.2).
     nanoseconds: int | None
 
     def body(self, order: str) -> tuple[int, bytes]:
@@ -113,18 +108,10 @@ class InfoTimestamp:
 
 @dataclass(frozen=True, slots=True)
 class NumberSet:
-    """A set of sequence numbers or of fragment numbers (8.3.5.5, 8.3.5.7).
+    """A set of sequence numbers or of fragment numbers (8.3.5.5, 8.3.5.7)."""
 
-    Attributes
-    ----------
-    base : int
-        All numbers below it are received, or irrelevant.
-    members : tuple of int
-        The numbers in the set, ascending, each less than ``base + 256``.
-    """
-
-    base: int
-    members: tuple[int, ...] = ()
+    base: int  # All numbers below it are received, or irrelevant.
+    members: tuple[int, ...] = ()  # The numbers in the set, ascending, each less than `base + 256`.
 
     MAX_SIZE: ClassVar[int] = 256
 
@@ -182,26 +169,17 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Heartbeat:
-    """HEARTBEAT: the sequence numbers that a writer has (8.3.8.6).
-
-    Attributes
-    ----------
-    first, last : int
-        Lowest and highest number. If there are none, `last` is ``first - 1``.
-    count : int
-        Number of this heartbeat, modulo 2**32 (8.4.15.7).
-    final : bool
-        Whether a reader that misses nothing need not answer.
-    """
+    """HEARTBEAT: the sequence numbers that a writer has (8.3.8.6)."""
 
     KIND: ClassVar[int] = 0x07
 
     reader: int
     writer: int
+    # Lowest and highest number. If there are none, `last` is `first - 1`.
     first: int
     last: int
-    count: int
-    final: bool = False
+    count: int  # Number of this heartbeat, modulo 2**32 (8.4.15.7).
+    final: bool = False  # Whether a reader that misses nothing need not answer.
 
     def body(self, order: str) -> tuple[int, bytes]:
         bounds = sequence_number_bytes(self.first, order) + sequence_number_bytes(self.last, order)
@@ -296,23 +274,15 @@ class NackFrag:
 
 @dataclass(frozen=True, slots=True)
 class Data:
-    """DATA: a sample, or the end of an instance (8.3.8.2).
-
-    Attributes
-    ----------
-    reader, writer : int
-        Reader 0 means all matched readers.
-    sequence_number : int
-        The number of the sample, from 1 on.
-    payload : bytes or None
-        The serialized sample with its encapsulation header; the serialized key if `key`.
-    """
+    """DATA: a sample, or the end of an instance (8.3.8.2)."""
 
     KIND: ClassVar[int] = 0x15
 
+    # Reader 0 means all matched readers.
     reader: int
     writer: int
-    sequence_number: int
+    sequence_number: int  # The number of the sample, from 1 on.
+    # The serialized sample with its encapsulation header; the serialized key if `key`.
     payload: bytes | None
     key: bool = False
     inline: ParameterList = NO_PARAMETERS
@@ -339,28 +309,20 @@ class Data:
 
 @dataclass(frozen=True, slots=True)
 class DataFrag:
-    """DATA_FRAG: consecutive fragments of a sample (8.3.8.3).
-
-    Attributes
-    ----------
-    first, count : int
-        Number of the first fragment, from 1 on, and how many there are.
-    fragment_bytes, sample_bytes : int
-        Size of every fragment but the last, and of the whole sample with its encapsulation header.
-    payload : bytes
-        The bytes of these fragments.
-    """
+    """DATA_FRAG: consecutive fragments of a sample (8.3.8.3)."""
 
     KIND: ClassVar[int] = 0x16
 
     reader: int
     writer: int
     sequence_number: int
+    # Number of the first fragment, from 1 on, and how many there are.
     first: int
     count: int
+    # Size of every fragment but the last, and of the whole sample with its encapsulation header.
     fragment_bytes: int
     sample_bytes: int
-    payload: bytes
+    payload: bytes  # The bytes of these fragments.
     inline: ParameterList = NO_PARAMETERS
 
     def body(self, order: str) -> tuple[int, bytes]:
