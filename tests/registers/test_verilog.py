@@ -119,6 +119,8 @@ def test_registers_behave_under_random_transfers(tmp_path):
         cwd=work,
         env={
             **os.environ,
+            # A line for each transfer takes as long as the transfer.
+            "COCOTB_LOG_LEVEL": "WARNING",
             "ROUNDS": str(by_depth(100, 100_000)),
             "DEFINITION": str(definition),
             "FINGERPRINT": str(high << 32 | low),
