@@ -14,6 +14,9 @@ from tests.depth import LIVE, THOROUGH, by_depth, not_sampled
 from tests.tools import need
 from tests.vhdl.ghdl import GHDL
 
+# A circuit has hundreds of thousands of objects, most of which live as long as their test.
+gc.set_threshold(100_000, 20, 20)
+
 # A test must not fail because the machine is busy.
 settings.register_profile(
     "unhurried",
@@ -39,20 +42,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_collection_finish() -> None:
-    """Keep Python from searching the modules and items, which live to the end, for cycles.
-
-    A circuit has hundreds of thousands of objects, most of which live as long as their test.
-    """
+    """Keep Python from searching the modules and items, which live to the end, for cycles."""
     gc.freeze()
-    gc.set_threshold(100_000, 20, 20)
-    if not THOROUGH:
-        gc.disable()
-
-
-def pytest_runtest_teardown() -> None:
-    """Search for cycles after tests that have made many objects."""
-    if gc.get_count()[0] > 1_000_000:
-        gc.collect()
 
 
 @pytest.fixture(scope="session")

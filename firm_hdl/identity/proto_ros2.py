@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import struct
 import sys
+from dataclasses import dataclass
 from typing import Any
 
 import yaml
@@ -26,38 +27,81 @@ _LINE = re.compile(r"^(?=.)", re.MULTILINE)
 
 
 def ros2_proto(message: Message) -> str:
-    """Print an example of a message of ROS 2, without quotes around it.
-
-    Raises `DefinitionError` if the text would be too long. It is counted before it is written.
-    """
+    """Print an example of a message of ROS 2, without quotes around it."""
+    parts = closure([message])
+    sizes: dict[str, _Size] = {}
+    for part in parts:
+        sizes[part.name] = _size(part, sizes)
     texts: dict[str, str] = {}
-    for part in closure([message]):
-        parts = [_field(item, texts) for item in part.fields]
-        characters = sum(len(head) + len(entry) * count for head, entry, count in parts)
-        if characters > _MAX_CHARACTERS:
-            raise DefinitionError.of(
-                f"{part.name} has an example of {characters} characters, which is more than "
-                f"{_MAX_CHARACTERS}"
-            )
-        text = "".join(head + entry * count for head, entry, count in parts)
-        texts[part.name] = text or "{}\n"
+    for part in parts:
+        texts[part.name] = _message(part, texts)
     return texts[message.name]
 
 
-def _field(item: Field, texts: dict[str, str]) -> tuple[str, str, int]:
-    """Return the text of a field: a head, the text of an entry, and how often that follows."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Size:
+    """Size of a text. Indentation adds two characters to each line."""
+
+    characters: int
+    lines: int
+
+
+def _size(message: Message, sizes: dict[str, _Size]) -> _Size:
+    """Count the text of a type before it is written.
+
+    Raises `DefinitionError` if the text would be too long.
+    """
+    characters = lines = 0
+    for item in message.fields:
+        each = _field_size(item, sizes)
+        characters += each.characters
+        lines += each.lines
+    if characters > _MAX_CHARACTERS:
+        problem = (
+            f"{message.name} has an example of {characters} characters, which is more than "
+            f"{_MAX_CHARACTERS}"
+        )
+        raise DefinitionError.of(problem)
+    return _Size(characters=characters, lines=lines) if lines else _Size(characters=3, lines=1)
+
+
+def _field_size(item: Field, sizes: dict[str, _Size]) -> _Size:
+    match item.type:
+        case Message(fields=(_, *_)) as nested:
+            inner, count = sizes[nested.name], 1
+        case Array(element=Message() as nested, count=count):
+            inner = sizes[nested.name]
+        case Array(element=element, count=count) if item.default is None:
+            entry = _dump([_initial(element)])
+            inner = _Size(characters=len(entry) - 2, lines=1)
+        case _:
+            # A sequence is empty, or no longer than its default.
+            text = _field(item, {})
+            return _Size(characters=len(text), lines=text.count("\n"))
+    # Either two blanks, or a dash and a blank.
+    characters = len(_key(item)) + 1 + count * (inner.characters + 2 * inner.lines)
+    return _Size(characters=characters, lines=1 + count * inner.lines)
+
+
+def _message(message: Message, texts: dict[str, str]) -> str:
+    return "".join(_field(item, texts) for item in message.fields) or "{}\n"
+
+
+def _field(item: Field, texts: dict[str, str]) -> str:
     match item.type:
         case Message(fields=()):
-            return f"{_key(item)} {{}}\n", "", 0
+            return f"{_key(item)} {{}}\n"
         case Message():
-            return f"{_key(item)}\n", _indented(texts[item.type.name]), 1
+            return f"{_key(item)}\n{_indented(texts[item.type.name])}"
         case Array(element=Message() as element, count=count):
             # A list is not indented under its key; the dash and blank are the indentation.
-            return f"{_key(item)}\n", f"- {_indented(texts[element.name])[2:]}", count
+            entry = texts[element.name]
+            return f"{_key(item)}\n" + f"- {_indented(entry)[2:]}" * count
         case Array(element=element, count=count) if item.default is None:
-            return f"{_key(item)}\n", _dump([_initial(element)]), count
+            entry = _dump([_initial(element)])
+            return f"{_key(item)}\n" + entry * count
         case _:
-            return _dump({item.name: _value(item)}), "", 0
+            return _dump({item.name: _value(item)})
 
 
 def _key(item: Field) -> str:
