@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -11,12 +13,15 @@ import sys
 import threading
 import types
 from collections import Counter
+from dataclasses import replace
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from firm_hdl.cli import main
+from firm_hdl.errors import UserError
 from firm_hdl.node import Node, read_description
 from firm_hdl.node.top import node_ports
 from tests.node.accelerators import echo_text
@@ -257,6 +262,21 @@ class Fabric:
     reset = let_packet_come
 
 
+class Clocks(type):
+    """PYNQ's clocks, with a PLL of 1000 MHz; at first, divisors for one of 1600 MHz are set."""
+
+    divisors = 16, 1
+
+    @property
+    def fclk0_mhz(cls):
+        return 1000 / math.prod(cls.divisors)
+
+    @fclk0_mhz.setter
+    def fclk0_mhz(cls, mhz):
+        both = itertools.product(range(1, 64), repeat=2)
+        cls.divisors = min(both, key=lambda each: abs(1000 / math.prod(each) - mhz))
+
+
 def fake_pynq(node, address=0x1000_0000, size=1 << 18):
     """Return a module like PYNQ's: an overlay with a DMA, and a node behind it."""
     seen, lock = np.zeros(size, "u1"), threading.RLock()
@@ -294,7 +314,9 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 18):
         return array
 
     module = types.ModuleType("pynq")
+    module.__spec__ = ModuleSpec("pynq", None)
     module.MMIO, module.Overlay, module.allocate = Mmio, Overlay, allocate
+    module.Clocks = Clocks("Clocks", (), {})
     return module
 
 
@@ -304,7 +326,8 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     book = json.loads((out / "echo.ipynb").read_text())
     cells = ["".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code"]
     node = FakeNode(read_description(file).fingerprint)
-    monkeypatch.setitem(sys.modules, "pynq", fake_pynq(node))
+    module = fake_pynq(node)
+    monkeypatch.setitem(sys.modules, "pynq", module)
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq", raising=False)
     monkeypatch.chdir(out)
     values = {}
@@ -319,6 +342,11 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     assert values["packet"].hex() in shown and any(values["packet"][4:])
     assert any("std_msgs__msg__String" in type(each).__name__ for each in shown)
     assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", capsys.readouterr().out)
+    # The clock is that of the description, or none.
+    assert module.Clocks.fclk0_mhz == 100
+    other = replace(values["description"], clock_hz=75e6)
+    with pytest.raises(UserError, match=r"nearest clock to 75 MHz is 76\.9231 MHz"):
+        values["NodeOverlay"]("echo.bit").board(other)
     # Anything that names PYNQ's module would be stale in other tests.
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq")
 
