@@ -491,6 +491,11 @@ def test_converters_are_ip_of_vivado(vivado, tmp_path):
         ],
         "1",
     )
+    revisions = re.findall(
+        r"coreRevision>(\d+)<",
+        "".join((each / "component.xml").read_text() for each in ip.parent.iterdir()),
+    )
+    assert len({*revisions}) == len(revisions) == 4
     for each in ip.parent.iterdir():
         files = [str(file) for file in each.glob("*.v")]
         subprocess.run(["iverilog", "-g2005", "-Wall", "-t", "null", *files], check=True)
