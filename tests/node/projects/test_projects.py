@@ -352,7 +352,9 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
             exec(last, values)
     assert values["packet"].hex() in shown and any(values["packet"][4:])
     assert any("std_msgs__msg__String" in type(each).__name__ for each in shown)
-    assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", capsys.readouterr().out)
+    printed = capsys.readouterr().out
+    assert "\nPYNQ loads echo.bit\nboard pynq: ready\n" in printed
+    assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", printed)
     # The clock is that of the description, or none.
     assert module.Clocks.fclk0_mhz == 100
     other = replace(values["description"], clock_hz=75e6)
@@ -360,6 +362,10 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
         values["NodeOverlay"]("echo.bit").board(other)
     # Anything that names PYNQ's module would be stale in other tests.
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq")
+    # No simulation takes the place of a PYNQ that cannot be imported.
+    monkeypatch.delattr(module, "Clocks")
+    with pytest.raises(ImportError, match="Clocks"):
+        exec(cells[0], {})
 
 
 def test_what_is_no_project_is_refused_and_changes_nothing(tmp_path, monkeypatch, capsys):
