@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import firm_hdl
 from firm_hdl.export.axis_leaves import AxisPort, axis_module
 from firm_hdl.export.backend import Converters, Output, module_name
+from firm_hdl.export.manifest import digest, to_json
 from firm_hdl.export.options import Ip as Tool
 from firm_hdl.export.registers import register_ports
 from firm_hdl.export.templates import render
@@ -41,14 +42,14 @@ _FOLDER = "ip"
 
 _VENDOR = "firm-hdl"
 
-# As AMD's IP "Mini ISP" (2025) names them; "zynquplus" has the RFSoCs and the Kria, too. An "a" in
+# As AMD's IP "Mini ISP" (2025) names them, and the RFSoCs; "zynquplus" has the Kria. An "a" in
 # front is for cars, a "q" for defence, an "l" behind is of low power.
 _FAMILIES = (
     *("artix7", "artix7l", "aartix7", "qartix7"),
     *("kintex7", "kintex7l", "akintex7", "qkintex7", "qkintex7l"),
     *("spartan7", "aspartan7", "virtex7", "qvirtex7", "zynq", "azynq", "qzynq"),
     *("kintexu", "virtexu", "artixuplus", "kintexuplus", "spartanuplus"),
-    *("virtexuplus", "virtexuplusHBM", "virtexuplus58g", "zynquplus", "versal"),
+    *("virtexuplus", "virtexuplusHBM", "virtexuplus58g", "zynquplus", "zynquplusRFSOC", "versal"),
 )
 
 _VIEWS = (
@@ -74,6 +75,9 @@ _ACCESS: dict[Kind, tuple[str, str]] = {
     "unused": ("write-only", ""),
     "event": ("read-write", "oneToClear"),
 }
+
+_DMA_RESETS = ("mm2s_aresetn", "s2mm_aresetn")
+"""Of a node beside an AXI DMA, which makes them low for a reset by software."""
 
 _AXIS = ("tdata", "tkeep", "tlast", "tuser", "tdest", "tid", "tvalid", "tready")
 _AXI = (
@@ -110,10 +114,12 @@ class Ip:
         return ".".join(firm_hdl.__version__.split(".")[:2])
 
     @property
-    def revision(self) -> str:
-        """The part of the version that is left, as a number."""
-        last = firm_hdl.__version__.split(".")[2:3]
-        return last[0] if last and last[0].isdigit() else "0"
+    def revision(self) -> int:
+        """A number from 1 to 2**31 - 1 that differs for other files.
+
+        By it, ``report_ip_status`` of Vivado sees that an instance is of an earlier build.
+        """
+        return 1 + int(digest(to_json({**self.files})), 16) % (2**31 - 1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,7 +144,8 @@ def buses_of(ports: Sequence[Any]) -> list[Bus]:
     """Return the buses of a design, by the names of its ports: streams, registers, clock, reset.
 
     A stream has ``NAME_tdata``, ``NAME_tvalid`` and ``NAME_tready`` at least. The clock is
-    ``aclk``, its reset ``aresetn``, the interrupt ``irq``, and registers are ``s_axi``.
+    ``aclk``, its resets ``aresetn`` and those of a DMA, the interrupt ``irq``, and registers are
+    ``s_axi``.
     """
     by_name = {port.name: port for port in ports}
     buses = list(_streams(by_name))
@@ -147,11 +154,12 @@ def buses_of(ports: Sequence[Any]) -> list[Bus]:
         buses.append(Bus(name="s_axi", kind="aximm", mode="slave", ports=axi))
     # UG994, "Common Internal Bus Interfaces": a list with colons of all that the clock drives.
     clocked = ":".join(bus.name for bus in buses)
-    clock = {"ASSOCIATED_BUSIF": clocked, "ASSOCIATED_RESET": "aresetn"}
+    resets = [name for name in ("aresetn", *_DMA_RESETS) if name in by_name]
+    clock = {"ASSOCIATED_BUSIF": clocked, "ASSOCIATED_RESET": ":".join(resets)}
     reset, interrupt = {"POLARITY": "ACTIVE_LOW"}, {"SENSITIVITY": "LEVEL_HIGH"}
     signals: list[tuple[Any, ...]] = [
         ("aclk", "clock", "slave", {"CLK": "aclk"}, clock),
-        ("aresetn", "reset", "slave", {"RST": "aresetn"}, reset),
+        *((name, "reset", "slave", {"RST": name}, reset) for name in resets),
         ("irq", "interrupt", "master", {"INTERRUPT": "irq"}, interrupt),
     ]
     return buses + [

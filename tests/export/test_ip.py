@@ -165,9 +165,14 @@ def check_ip(folder, work):
     read = Component()
     read.load(str(file))
     assert read.name == folder.name
-    for family in ("azynq", "artixuplus", "zynquplus", "versal"):
+    for family in ("azynq", "artixuplus", "zynquplus", "zynquplusRFSOC", "versal"):
         assert f'"Production">{family}<' in file.read_text()
         assert f"{family} Production" in (folder / "package.tcl").read_text()
+    revision = re.search(r"coreRevision>(\d+)<", file.read_text())[1]
+    assert 0 < int(revision) < 1 << 31
+    assert (
+        f"set_property core_revision {{{revision}}} $core" in (folder / "package.tcl").read_text()
+    )
     component = ElementTree.parse(file).getroot()
     found, registers, defaults = recorded(folder, work)
     assert found == buses(component)
@@ -486,6 +491,11 @@ def test_converters_are_ip_of_vivado(vivado, tmp_path):
         ],
         "1",
     )
+    revisions = re.findall(
+        r"coreRevision>(\d+)<",
+        "".join((each / "component.xml").read_text() for each in ip.parent.iterdir()),
+    )
+    assert len({*revisions}) == len(revisions) == 4
     for each in ip.parent.iterdir():
         files = [str(file) for file in each.glob("*.v")]
         subprocess.run(["iverilog", "-g2005", "-Wall", "-t", "null", *files], check=True)
@@ -565,9 +575,16 @@ def test_node_with_a_stream_is_ip(tmp_path, capsys, monkeypatch, tool, link, oth
     found, left = check_ip(folder, tmp_path / "work")
     # In the project, not in the IP: a program of the processor includes it.
     assert "topic_cmd = 1;" in (folder.parents[1] / "demo_zynq.hpp").read_text()
-    # They are ports without an interface.
-    assert {"mm2s_aresetn", "s2mm_aresetn", "soft_reset"} <= set(left)
-    left -= {"mm2s_aresetn", "s2mm_aresetn", "soft_reset"}
+    # Vivado connects a reset with a reset only (BD 41-1731).
+    resets = ["aresetn", "mm2s_aresetn", "s2mm_aresetn"]
+    assert [each for each, (kind, *_) in found.items() if ":reset:" in kind] == resets
+    assert found["mm2s_aresetn"][1:] == (
+        *("slave", {"RST": "mm2s_aresetn"}),
+        {"POLARITY": "ACTIVE_LOW"},
+    )
+    assert found["aclk"][3]["ASSOCIATED_RESET"] == ":".join(resets)
+    # It is a port without an interface.
+    left.remove("soft_reset")
     assert found["s_axi"][2]["WSTRB"] == "s_axi_wstrb" and "irq" in found
     assert found["s_axis"][2]["TKEEP"] == "s_axis_tkeep"
     assert found["m_axis_subscribe_cmd_data"][2]["TDATA"] == "m_axis_subscribe_cmd_data_tdata"

@@ -13,8 +13,9 @@ import time
 from contextlib import suppress
 from typing import Any
 
-from pynq import MMIO, Overlay, allocate
+from pynq import MMIO, Clocks, Overlay, allocate
 
+from firm_hdl.errors import UserError
 from firm_hdl.node.boards.zynq import ZynqBoard
 from firm_hdl.node.description import Description
 
@@ -27,6 +28,8 @@ _INTERRUPTS = 1 << 12 | 1 << 14
 """IOC_Irq and Err_Irq in both."""
 _BUFFER_BYTES = 1 << 18
 """Three of the largest frames, which have less than 64 kB."""
+_CLOCK_ERROR = 1e-3
+"""Of a clock that a description rounds, such as 66.7 MHz."""
 
 
 class NodeOverlay(Overlay):
@@ -40,18 +43,35 @@ class NodeOverlay(Overlay):
     """
 
     def board(self, description: Description, dma: str = "dma") -> ZynqBoard:
-        """Return the node as a board.
+        """Set the clock of the node, and return the node as a board.
 
         * `description`: that of the node in the overlay.
         * `dma`: the name of the AXI DMA in the block design.
+
+        Raises `UserError` if no divisors make the clock of the node.
         """
         about = self.ip_dict[dma]
+        _set_clock(description.clock_hz / 1e6)
 
         def devices(*_: str) -> tuple[_Registers, _Buffer]:
             mmio = MMIO(about["phys_addr"], about["addr_range"])
             return _Registers(mmio, about.get("parameters", {})), _Buffer()
 
         return ZynqBoard("pynq", dma, "buffer", description.link.buffer_bytes, devices)
+
+
+def _set_clock(mhz: float) -> None:
+    """Set FCLK0 or pl_clk0.
+
+    A download has set its divisors only, as the `.hwh` has them. They are for the PLL that Vivado
+    has planned, and the PLL runs as the boot loader has set it.
+    """
+    Clocks.fclk0_mhz = mhz
+    if abs((real := Clocks.fclk0_mhz) / mhz - 1) > _CLOCK_ERROR:
+        raise UserError(
+            f"PYNQ's nearest clock to {mhz:g} MHz is {real:g} MHz; with this number as clock_mhz "
+            "of the node, make the overlay anew"
+        )
 
 
 class _Registers:

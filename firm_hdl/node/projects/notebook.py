@@ -13,18 +13,23 @@ from firm_hdl.node.description import Description
 __all__ = ["notebook"]
 
 _OPEN = """\
-{head}from firm_hdl.node import read_description
+{head}from importlib.util import find_spec
+
+from firm_hdl.node import read_description
 from firm_hdl.node.bridge import Client
 
 description = read_description({file})
-try:
+has_board = find_spec("pynq") is not None  # False simulates the node.
+if has_board:
+    print("PYNQ loads {name}.bit")
     from firm_hdl.node.boards.pynq import NodeOverlay
-except ImportError:
+
+    board = NodeOverlay("{name}.bit").board(description)
+else:
+    print("There is no PYNQ: the node is simulated. Compiling it takes minutes at first.")
     from firm_hdl.node.boards import board_of
 
     board = board_of("sim", description)
-else:
-    board = NodeOverlay("{name}.bit").board(description)
 
 node = Client(description, board, report=print).open()"""
 
@@ -70,13 +75,13 @@ def _cells(
 ) -> Iterator[tuple[str, str]]:
     yield (
         "markdown",
-        f"# The node {description.node}\n\nWith PYNQ, this loads the overlay. Elsewhere, the node "
-        "is simulated; to compile it takes a minute or more at first.",
+        f"# The node {description.node}\n\nWhere the module `pynq` is installed, this loads the "
+        "overlay. Elsewhere, the node is simulated; to compile it takes a minute or two at first.",
     )
     head, place, copy = "", repr(file), repr(os.path.basename(file))
     if place != copy:
         # On the board, it was copied beside the notebook.
-        head, place = "import os\n\n", f"{copy} if os.path.exists({copy}) else {place}"
+        head, place = "import os\n", f"{copy} if os.path.exists({copy}) else {place}"
     yield "code", _OPEN.format(head=head, file=place, name=name)
     came = next((each for each in description.topics if each.kind == "subscribe"), None)
     sent = next((each for each in description.topics if each.kind == "publish"), None)

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import math
 import re
 import shutil
 import subprocess
@@ -11,12 +13,15 @@ import sys
 import threading
 import types
 from collections import Counter
+from dataclasses import replace
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from firm_hdl.cli import main
+from firm_hdl.errors import UserError
 from firm_hdl.node import Node, read_description
 from firm_hdl.node.top import node_ports
 from tests.node.accelerators import echo_text
@@ -62,6 +67,7 @@ PINS = {
     "proc_sys_reset": "in slowest_sync_clk ext_reset_in out peripheral_aresetn",
     "smartconnect": "in aclk aresetn slave S00_AXI S01_AXI master M00_AXI",
     "util_vector_logic": "in Op1 Op2 out Res",
+    "ilvector_logic": "in Op1 Op2 out Res",
 }
 
 
@@ -90,19 +96,28 @@ def node_pins(description):
 RECORDER = """\
 proc unknown {args} {puts [join $args \\x1f]; return [lindex $args end]}
 proc get_board_parts {args} {return xilinx.com:k26c:part0:1.4}
+proc get_ipdefs {args} {return {CATALOG}}
 proc get_property {name object} {return [expr {$name eq "PROGRESS" ? "100%" : "0.5"}]}
 source design.tcl
 """
 
 
-@pytest.mark.parametrize(("board", "bus"), [("kria", 8), ("pynq", 1)])
-def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus):
+@pytest.mark.parametrize(
+    ("board", "bus", "gate"),
+    [
+        ("kria", 8, "ip:util_vector_logic"),
+        ("kria", 8, "inline_hdl:ilvector_logic"),
+        ("pynq", 1, ""),
+    ],
+)
+def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus, gate):
     file, out = init(board, LOOP.replace("BUS", str(bus)), tmp_path)
     places = ("system.runs/impl_1", "system.gen/sources_1/bd/system/hw_handoff")
     for place, made in zip(places, ("system_wrapper.bit", "system.hwh"), strict=True):
         (out / "build/vivado" / place).mkdir(parents=True)
         (out / "build/vivado" / place / made).write_text(made)
-    (out / "run.tcl").write_text(RECORDER)
+    catalog = "gate" if "inline" in gate else ""
+    (out / "run.tcl").write_text(RECORDER.replace("CATALOG", catalog))
     command = [need("tclsh", shutil.which("tclsh")), "run.tcl"]
     done = subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -115,6 +130,7 @@ def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus):
     own, widths = node_pins(read_description(file))
     kinds = {call[-1]: call[-2] for call in calls if call[0] == "create_bd_cell"}
     assert kinds["node"] == "firm-hdl:node:little"
+    assert kinds.get("interrupt", "xilinx.com:") == f"xilinx.com:{gate}"
     assert kinds["ps"].endswith("zynq_ultra_ps_e" if board == "kria" else "processing_system7")
     ways = {
         f"{cell}/{pin}": way
@@ -182,7 +198,7 @@ def test_make_makes_what_xmutil_loads(tmp_path, monkeypatch, name):
     monkeypatch.setenv("PATH", f"{tmp_path}:{Path('/bin')}:{Path('/usr/bin')}")
     for _ in range(2):
         done = subprocess.run(["make"], cwd=out, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
+        assert done.returncode == 0 and not done.stderr, done.stderr
     asked = (out / "build/little/manifest.json").read_text().splitlines()
     assert asked[:2] == ["node", "build"] and (out / asked[2]).samefile(file)
     assert len((out / "vivado.txt").read_text().splitlines()) == 1
@@ -257,6 +273,21 @@ class Fabric:
     reset = let_packet_come
 
 
+class Clocks(type):
+    """PYNQ's clocks, with a PLL of 1000 MHz; at first, divisors for one of 1600 MHz are set."""
+
+    divisors = 16, 1
+
+    @property
+    def fclk0_mhz(cls):
+        return 1000 / math.prod(cls.divisors)
+
+    @fclk0_mhz.setter
+    def fclk0_mhz(cls, mhz):
+        both = itertools.product(range(1, 64), repeat=2)
+        cls.divisors = min(both, key=lambda each: abs(1000 / math.prod(each) - mhz))
+
+
 def fake_pynq(node, address=0x1000_0000, size=1 << 18):
     """Return a module like PYNQ's: an overlay with a DMA, and a node behind it."""
     seen, lock = np.zeros(size, "u1"), threading.RLock()
@@ -294,7 +325,9 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 18):
         return array
 
     module = types.ModuleType("pynq")
+    module.__spec__ = ModuleSpec("pynq", None)
     module.MMIO, module.Overlay, module.allocate = Mmio, Overlay, allocate
+    module.Clocks = Clocks("Clocks", (), {})
     return module
 
 
@@ -304,7 +337,8 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     book = json.loads((out / "echo.ipynb").read_text())
     cells = ["".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code"]
     node = FakeNode(read_description(file).fingerprint)
-    monkeypatch.setitem(sys.modules, "pynq", fake_pynq(node))
+    module = fake_pynq(node)
+    monkeypatch.setitem(sys.modules, "pynq", module)
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq", raising=False)
     monkeypatch.chdir(out)
     values = {}
@@ -318,9 +352,20 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
             exec(last, values)
     assert values["packet"].hex() in shown and any(values["packet"][4:])
     assert any("std_msgs__msg__String" in type(each).__name__ for each in shown)
-    assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", capsys.readouterr().out)
+    printed = capsys.readouterr().out
+    assert "\nPYNQ loads echo.bit\nboard pynq: ready\n" in printed
+    assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", printed)
+    # The clock is that of the description, or none.
+    assert module.Clocks.fclk0_mhz == 100
+    other = replace(values["description"], clock_hz=75e6)
+    with pytest.raises(UserError, match=r"nearest clock to 75 MHz is 76\.9231 MHz"):
+        values["NodeOverlay"]("echo.bit").board(other)
     # Anything that names PYNQ's module would be stale in other tests.
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq")
+    # No simulation takes the place of a PYNQ that cannot be imported.
+    monkeypatch.delattr(module, "Clocks")
+    with pytest.raises(ImportError, match="Clocks"):
+        exec(cells[0], {})
 
 
 def test_what_is_no_project_is_refused_and_changes_nothing(tmp_path, monkeypatch, capsys):
