@@ -69,6 +69,7 @@ def test_work_that_fails_ends_the_tracing():
     assert sys.gettrace() is before
 
 
+@pytest.mark.thorough
 def test_types_differ_by_what_the_generator_does_for_them():
     found = {}
     for name in ("std_msgs/msg/Bool", "std_msgs/msg/String"):
@@ -84,6 +85,7 @@ def test_types_differ_by_what_the_generator_does_for_them():
     )
 
 
+@pytest.mark.thorough
 def test_the_chosen_types_take_all_branches_and_fewer_do_not(tmp_path, capsys):
     names = ["std_msgs/msg/Bool", "std_msgs/msg/Int8", "std_msgs/msg/String"]
     file = tmp_path / "chosen.txt"

@@ -45,7 +45,7 @@ def state(root: Path) -> dict[Path, tuple[int, ...]]:
 
 def test_no_kill_and_no_other_build_costs_a_users_file_or_leaves_half_a_folder():
     assert (
-        json.loads(run(sys.executable, "-m", "tests.export.strikes", by_depth("10", "200"))) == []
+        json.loads(run(sys.executable, "-m", "tests.export.strikes", by_depth("6", "200"))) == []
     )
 
 

@@ -149,6 +149,7 @@ MISTAKES = [
 
 
 @pytest.mark.sampled(2)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("language", "change", "text"), MISTAKES)
 def test_mistakes_are_shown_where_they_are(written, language, change, text):
     with pytest.raises(DefinitionError) as caught:
@@ -227,6 +228,7 @@ MORE_MISTAKES = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("language", "changes", "texts"), MORE_MISTAKES)
 def test_mistakes_that_tools_describe_badly(written, language, changes, texts):
     with pytest.raises(DefinitionError) as caught:
@@ -263,6 +265,7 @@ RECORD_MISTAKES = [
 ]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("language", "changes", "text"), RECORD_MISTAKES)
 def test_mistakes_in_records(written, language, changes, text):
     with pytest.raises(DefinitionError, match=r"Relay\.\w+:\d+:\d+: error: ") as caught:
