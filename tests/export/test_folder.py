@@ -44,9 +44,7 @@ def state(root: Path) -> dict[Path, tuple[int, ...]]:
 
 
 def test_no_kill_and_no_other_build_costs_a_users_file_or_leaves_half_a_folder():
-    assert (
-        json.loads(run(sys.executable, "-m", "tests.export.strikes", by_depth("6", "200"))) == []
-    )
+    assert json.loads(run(sys.executable, "-m", "tests.export.strikes", by_depth("6", "200"))) == []
 
 
 def test_a_folder_is_current_while_its_inputs_and_files_are_the_same(folder):
