@@ -39,7 +39,6 @@ def test_a_node_in_simulation_passes(tmp_path, capsys):
     assert main([*SIM, "--results", str(path), BOOL]) == 0
 
 
-@pytest.mark.thorough
 def test_a_node_in_simulation_with_a_fault_fails(tmp_path, capsys):
     """The accelerator is the user's, so it may do anything; the bytes decide."""
     node = tmp_path / "node.yaml"
