@@ -148,9 +148,13 @@ def _link(
     of_link = [port for port in ports if port["member"].startswith("link.")]
     group = of_link[0]["name"].partition("_")[0]
     if group not in LINKS:
-        links = " and ".join(each for each in LINKS if each in board.groups())
-        kind = description.link.kind
-        problem(where, f"{board.name} has {links}; for '{kind}', the top level is yours to write")
+        there = [each for each in LINKS if each in board.groups()]
+        link = "kind: uart" if there[0] == "uart" else f"kind: udp, ethernet: {there[0]}, ..."
+        problem(
+            where,
+            f"{board.name} has {' and '.join(there)}, so the description needs 'link: {{{link}}}'; "
+            f"for '{description.link.kind}', the top level is yours to write",
+        )
         return []
     found = []
     for port in of_link:
