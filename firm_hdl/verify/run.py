@@ -14,19 +14,13 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
-from firm_hdl.errors import UserError
-from firm_hdl.export.build import BuildError
-from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.jobs.processes import unwound_when_terminated
-from firm_hdl.jobs.programs import ProgramMissingError
 from firm_hdl.verify.bench import Benches
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.clients.system import Libraries
 from firm_hdl.verify.command import Workload
-from firm_hdl.verify.references.client import ClientMissingError
 from firm_hdl.verify.report.formats import write_report
 from firm_hdl.verify.results.file import (
-    ResultsError,
     ResultsWriter,
     code_digest,
     environment,
@@ -36,7 +30,6 @@ from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import System
-from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.system import Ts1, each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
@@ -54,23 +47,13 @@ def run_workload(work: Workload) -> int:
     errors in the others are printed at the end.
     """
     request = work.request
-    try:
-        with unwound_when_terminated():
-            found = _run_systems(work)
-        for line in concluded(found, request):
-            print(line)
-        if request.report is not None and request.results is not None:
-            write_report([request.results], request.report)
-            print(f"wrote   {request.report}")
-    except (
-        BuildError,
-        ClientMissingError,
-        ExecutorError,
-        ResultsError,
-        ProgramMissingError,
-        UnknownTypeError,
-    ) as error:
-        raise UserError(str(error)) from None
+    with unwound_when_terminated():
+        found = _run_systems(work)
+    for line in concluded(found, request):
+        print(line)
+    if request.report is not None and request.results is not None:
+        write_report([request.results], request.report)
+        print(f"wrote   {request.report}")
     for problem in work.problems:
         print(problem, file=sys.stderr)
     return 1 if failure(found, request, len(work.problems)) else 0
@@ -140,15 +123,15 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
     options = {**request.kept, "code": code_digest(), "inputs": inputs_digest(read)}
     for system in systems:
         options |= system.options
-    more = {"executor": request.executor}
+    session = environment()
     if problems := work.problems:
         # TS2, TS3 and the benches have no tests of these definitions, so the file names them here.
-        more["definitions that are refused"] = f"{len(problems)}: {min(problems)}"
+        session["definitions that are refused"] = f"{len(problems)}: {min(problems)}"
     return ResultsWriter(
         path,
         options=options,
         planned=[test for system in systems for test in system.tests],
-        session=environment(**more),
+        session=session,
     )
 
 

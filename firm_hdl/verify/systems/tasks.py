@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.frontend import Library, all_names, open_library
 from firm_hdl.model import Message, closure
 from firm_hdl.verify.systems.options import Options
@@ -20,7 +20,7 @@ from firm_hdl.wire import too_large
 __all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks", "library_of"]
 
 
-class UnknownTypeError(ValueError):
+class UnknownTypeError(UserError):
     """No distribution or recording has a type that was asked for."""
 
 

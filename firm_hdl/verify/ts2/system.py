@@ -62,9 +62,9 @@ def check_plan(message: Message, wire: Wire | None, trial: Trial) -> None:
 class Ts2(TypesSystem):
     """Plans of types; a test is one plan, or one golden plan.
 
-    * `request`: `paths`, `wire`, `widths`, `golden`, `jobs` and `executor` are used.
+    * `request`: `paths`, `wire`, `widths`, `golden`, and `jobs` are used.
 
-    Raises `BuildError`: from `tests`, if the folder of golden plans cannot be used.
+    Raises `UserError`: from `tests`, if the folder of golden plans cannot be used.
     """
 
     name = "ts2"
@@ -92,7 +92,6 @@ class Ts2(TypesSystem):
             return run_tests(
                 *(_checked, request, left, self._command),
                 most=MOST_IN_A_SHARE,
-                executor=request.executor,
                 jobs=request.jobs,
             )
 
@@ -107,10 +106,7 @@ class Ts2(TypesSystem):
         """The golden plans of the types that were asked for."""
         if self._request.golden is None:
             return []
-        try:
-            goldens = read_golden(self._request.golden)
-        except ValueError as error:
-            raise BuildError(str(error)) from None
+        goldens = read_golden(self._request.golden)
         wanted = {(distro, _plain(task.name)) for task in self._tasks for distro in task.same}
         return [each for each in goldens if (each.distro, _plain(each.plan.message)) in wanted]
 
