@@ -18,7 +18,7 @@ from typing import Any, ClassVar, TypeAlias
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
-from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
+from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import WIRE_OF
 from firm_hdl.terminal import stage
@@ -287,7 +287,6 @@ def run_tests(
     command: Callable[[Test], str],
     *,
     most: int = 1,
-    executor: str = PROCESSES,
     jobs: int | None = None,
 ) -> Made:
     """Call ``work(context, test)`` for each test, and yield records when they are ready.
@@ -306,7 +305,7 @@ def run_tests(
     while shares:
         again: list[tuple[Test, ...]] = []
         tasks = [(share, (work, context, share)) for share in shares]
-        with closing(run_each(_work_share, tasks, executor=executor, jobs=jobs)) as results:
+        with closing(run_each(_work_share, tasks, jobs=jobs)) as results:
             for share, result in results:
                 if isinstance(result, ExecutorError) and len(share) > 1:
                     again += [(test,) for test in share]

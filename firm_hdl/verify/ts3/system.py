@@ -99,7 +99,6 @@ class Ts3(System):
                     replace(options, simulated=not is_shared),
                     [test for test in left if (test in same) == is_shared],
                     lambda test: command_of(options, test.type, distro=test.distro),
-                    executor=self._request.executor,
                     jobs=self._request.jobs,
                 )
                 for share in made:
