@@ -183,11 +183,11 @@ class Acceptance:
         self._options, self._trial = options, trial
         layout = lay_out(message, wire)
         if max_message_bytes is None:
-            max_message_bytes = message_limit(layout.min_bytes)
+            max_message_bytes = message_limit(layout.least_bytes)
         self.plan = build_plan(
             layout, bus_bytes=options.bus_bytes, max_message_bytes=max_message_bytes
         )
-        if reason := too_large(self.plan, layout.min_bytes):
+        if reason := too_large(self.plan, layout.least_bytes):
             raise NotJudgedError(reason)
         trial.record.shape = digest(self.plan)
         self._random = random.Random(f"{options.seed}/{message.name}/broken")

@@ -83,7 +83,7 @@ def same_circuits(
         try:
             message = library_of(task.distro, options).message(task.name)
             wire: Any = options.wire or message.wire
-            limit = message_limit(lay_out(message, wire).min_bytes)
+            limit = message_limit(lay_out(message, wire).least_bytes)
             plan = plan_of(message, wire, options.bus_bytes, limit)
         except (DefinitionError, BuildError, ValueError):
             # The task's own test reports the error.

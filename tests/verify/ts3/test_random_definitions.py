@@ -44,7 +44,7 @@ MOST_CASES = by_depth(4, 8)
 def test_random_types_pass(wire, definition, bus_bytes, seed):
     message = definition.message
     layout = lay_out(message, wire)
-    work = work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes)
+    work = work_of(build_plan(layout, bus_bytes=bus_bytes), layout.least_bytes)
     assume(work <= MOST_WORK and work * bus_bytes <= MOST_WIDE_WORK)
     options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=MOST_CASES)
     trial = Trial.of(Test(system="ts3", distro="", type=message.name))
