@@ -86,12 +86,13 @@ def run_verify(given: argparse.Namespace) -> int:
 
 def _facts(results: str) -> dict[str, Any]:
     """Return what is in a file of results, as values of JSON."""
-    from firm_hdl.verify.report.summary import count, outcomes_of
+    from firm_hdl.verify.report.summary import outcomes_of
     from firm_hdl.verify.results.file import read_results
+    from firm_hdl.verify.results.verdict import Counts
 
     found = read_results(results)
     outcomes = outcomes_of([found])
-    counts = count(outcomes)
+    counts = Counts.of(each.verdict for each in outcomes)
     return {
         "verdict": "failed" if found.failure else counts.verdict,
         "failure": found.failure or None,

@@ -25,7 +25,6 @@ from firm_hdl.verify.report import charts, tables
 from firm_hdl.verify.report import tables as prose
 from firm_hdl.verify.report.charts import counts_bar
 from firm_hdl.verify.report.summary import (
-    NotRun,
     Outcome,
     Summary,
     failures_of,
@@ -35,6 +34,7 @@ from firm_hdl.verify.report.summary import (
 from firm_hdl.verify.report.tables import Table, TableCell
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import to_json as record_to_json
+from firm_hdl.verify.results.verdict import NotRun
 
 __all__ = ["FORMATS", "add_report", "run_report", "write_report"]
 

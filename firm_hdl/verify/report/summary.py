@@ -14,29 +14,34 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from firm_hdl.verify.results.file import Results
 from firm_hdl.verify.results.records import STAGES, Record, Test, settled
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.verdict import (
+    Counts,
+    Failed,
+    KnownDifference,
+    NotJudged,
+    NotRun,
+    Passed,
+    Verdict,
+)
 
 __all__ = [
     "LIMITS",
     "Box",
     "Correlation",
-    "Counts",
     "Curve",
     "Fit",
     "Group",
-    "NotRun",
     "Outcome",
     "Summary",
     "Trend",
     "box_of",
     "correlate",
-    "count",
     "curve_of",
     "failures_of",
     "outcomes_of",
@@ -156,15 +161,6 @@ def _ranks(values: np.ndarray) -> np.ndarray:
     return np.asarray(((ends - counts + ends + 1) / 2)[which])
 
 
-@dataclass(frozen=True, slots=True)
-class NotRun:
-    """A test has no result."""
-
-    name: ClassVar[str] = "not run"
-
-    reason: str = "there is no result of it"
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
     """The outcome of a test."""
@@ -174,45 +170,6 @@ class Outcome:
     record: Record | None
     # Name of the type whose equal circuit was simulated instead of the circuit of this type.
     circuit_of: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Counts:
-    """The number of tests of each outcome. Tests with a known difference do not count as passed."""
-
-    passed: int = 0
-    known: int = 0
-    failed: int = 0
-    not_judged: int = 0
-    not_run: int = 0
-
-    @property
-    def total(self) -> int:
-        """The number of all tests."""
-        return self.passed + self.known + self.failed + self.not_judged + self.not_run
-
-    @property
-    def verdict(self) -> str:
-        """The name of the worst outcome; ``not judged`` only if nothing was judged."""
-        if self.failed:
-            return Failed.name
-        if self.not_run or not self.total:
-            return NotRun.name
-        if self.passed:
-            return Passed.name
-        return KnownDifference.name if self.known else NotJudged.name
-
-
-def count(outcomes: Iterable[Outcome]) -> Counts:
-    """Count outcomes."""
-    found = Counter(outcome.verdict.name for outcome in outcomes)
-    return Counts(
-        passed=found[Passed.name],
-        known=found[KnownDifference.name],
-        failed=found[Failed.name],
-        not_judged=found[NotJudged.name],
-        not_run=found[NotRun.name],
-    )
 
 
 def failures_of(outcome: Outcome) -> tuple[str, ...]:
@@ -239,13 +196,9 @@ def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
 def _outcome(test: Test, record: Record | None, records: Mapping[str, Record]) -> Outcome:
     if record is None:
         return Outcome(test=test, verdict=NotRun(), record=None)
-    verdict: Verdict | NotRun = settled(record, records)
-    if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
-        return Outcome(test=test, verdict=verdict, record=record)
+    verdict = settled(record, records)
     other = records.get(record.same_as)
     circuit_of = record.same_as if other is None else other.test.type
-    if other is None:
-        verdict = NotRun(f"has the circuit of {circuit_of}, which was not run")
     return Outcome(test=test, verdict=verdict, record=record, circuit_of=circuit_of)
 
 
@@ -430,7 +383,7 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
         suites[_suite(outcome)].append(outcome)
     return Summary(
         title=title,
-        counts=count(outcomes),
+        counts=Counts.of(each.verdict for each in outcomes),
         by_suite=_groups((outcome, (_suite(outcome),)) for outcome in outcomes),
         by_distro=_groups(
             (outcome, (_suite(outcome), distro))
@@ -471,7 +424,7 @@ def _groups(labelled: Iterable[tuple[Outcome, tuple[str, ...]]]) -> tuple[Group,
     return tuple(
         Group(
             labels=labels,
-            counts=count(own),
+            counts=Counts.of(each.verdict for each in own),
             cpu_seconds=sum(o.record.cpu_seconds for o in own if o.record is not None),
         )
         for labels, own in sorted(found.items())

@@ -279,7 +279,6 @@ PACKAGES = (
     "mcap-ros2-support",
     "numpy",
     "lark",
-    "distributed",
 )
 
 _INPUTS = (".msg", ".srv", ".action", ".idl", ".xml", ".yaml")

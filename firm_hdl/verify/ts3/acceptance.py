@@ -12,14 +12,14 @@ the results. If a simulator of exported text is asked for, it replays all runs, 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import chain
 from typing import Any
 
 from firm_hdl.cases import NotJudgedError
-from firm_hdl.cases.damage import DAMAGES, broken_packets, stalls_for
+from firm_hdl.cases.damage import broken_and_good, stalls_for
 from firm_hdl.cases.directed import bare_packets
 from firm_hdl.cases.effort import (
     all_cases,
@@ -44,7 +44,7 @@ from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import PlanCoverage, Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
 from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.systems.system import Trial, recorded
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.compare import (
@@ -57,42 +57,49 @@ from firm_hdl.verify.ts3.confirm import confirm
 from firm_hdl.verify.ts3.task import command_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Acceptance", "accept_message", "accepted", "confirm_cases", "measured"]
+__all__ = [
+    "Acceptance",
+    "accept_message",
+    "accepted",
+    "confirm_cases",
+    "type_and_oracle",
+    "with_commands",
+]
 
 WAVEFORM_FOLDER = "waveforms"
 """The folder that the command for a waveform writes to."""
 
 
 def accepted(options: Options, test: Test) -> Record:
-    """Run all cases of the type of a test."""
-
-    def run(message: Message, judge: Judge, options: Options, trial: Trial) -> None:
+    """Run all cases of the type of a test. An exception goes into the record."""
+    with Trial.of(test) as trial:
+        message, judge = type_and_oracle(options, trial)
         accept_message(message, judge.oracle, judge.name, options, trial)
+    return with_commands(options, trial.end())
 
-    return measured(options, test, run)
 
+def type_and_oracle(options: Options, trial: Trial) -> tuple[Message, Judge]:
+    """Return the type of a test, and its oracle.
 
-def measured(
-    options: Options, test: Test, run: Callable[[Message, Judge, Options, Trial], None]
-) -> Record:
-    """Find the type of a test and its oracle, and call `run` with them; return the record.
-
-    * `run`: adds to the trial. An exception of `run` goes into the record as well.
+    Raises `DefinitionError`. Raises `NotJudgedError` if no oracle can judge the type.
     """
+    test = trial.record.test
+    message = library_of(test.distro, options).message(test.type)
+    judge = judge_of(
+        message,
+        None if options.paths or options.bags else test.distro,
+        stand_in=not options.bags and may_stand_in(message, options.references),
+    )
+    trial.record.note = judge.note
+    return message, judge
 
-    def found(trial: Trial) -> None:
-        message = library_of(test.distro, options).message(test.type)
-        judge = judge_of(
-            message,
-            None if options.paths or options.bags else test.distro,
-            stand_in=not options.bags and may_stand_in(message, options.references),
-        )
-        trial.record.note = judge.note
-        run(message, judge, options, trial)
 
+def with_commands(options: Options, record: Record) -> Record:
+    """Return the record with the commands that repeat its test."""
+    test = record.test
     waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
     return replace(
-        recorded(test, found),
+        record,
         command=command_of(options, test.type, distro=test.distro),
         waveform_command=command_of(waveform, test.type, distro=test.distro),
     )
@@ -264,9 +271,7 @@ class Acceptance:
 
     def check_damaged(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model with damaged packets."""
-        sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
-        broken = list(broken_packets(self.plan, sample, self._random))
-        packets = list(chain.from_iterable(zip(broken, (c.packet for c in sample), strict=True)))
+        packets = broken_and_good(self.plan, cases, self._random)
         stalls = stalls_for(self._random.random()) if self._options.stalled else None
         where = f"hardware, broken packets, {stalls}"
         seen = self.circuit.send(where, packets, stalls)

@@ -30,7 +30,7 @@ from firm_hdl.verify.simulators.trace import Trace, read_row
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.system import Trial
 
-__all__ = ["Circuit", "first_difference", "replay_failures"]
+__all__ = ["Circuit", "first_wrong_port", "replay_failures"]
 
 FULL_CYCLES = 60
 """Converters are full after this many cycles in which nothing leaves them."""
@@ -163,7 +163,7 @@ def replay_failures(
         return [f"{simulator.title}: {error}"]
     if not rows:
         return [f"{simulator.title}: no cycle was compared"]
-    difference = first_difference(trace, [row.rstrip() for row in rows])
+    difference = first_wrong_port(trace, [row.rstrip() for row in rows])
     return [f"{simulator.title}: {difference}"] if difference else []
 
 
@@ -175,7 +175,7 @@ def check_exportable(plan: Plan) -> None:
         raise NotJudgedError(f"it cannot be exported: {error}") from None
 
 
-def first_difference(trace: Trace, rows: Sequence[str]) -> str | None:
+def first_wrong_port(trace: Trace, rows: Sequence[str]) -> str | None:
     """Describe the first output that is not as recorded; `None` if all are."""
     if trace.expected == rows:
         return None

@@ -46,7 +46,7 @@ from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.systems.options import MOST_MESSAGES, Options
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError, library_of
-from firm_hdl.verify.ts3.acceptance import Acceptance, measured
+from firm_hdl.verify.ts3.acceptance import Acceptance, type_and_oracle, with_commands
 from firm_hdl.wire import Wire, lay_out, too_large
 
 __all__ = ["Selection", "collect_recorded", "replay", "select", "topics_of"]
@@ -292,7 +292,10 @@ def replay(options: Options, test: Test) -> Record:
     * `options`: options with recordings.
     * `test`: its distribution is the one by whose rules the definitions in the recordings are read.
     """
-    return measured(options, test, _replay)
+    with Trial.of(test) as trial:
+        message, judge = type_and_oracle(options, trial)
+        _replay(message, judge, options, trial)
+    return with_commands(options, trial.end())
 
 
 def _replay(message: Message, judge: Judge, options: Options, trial: Trial) -> None:

@@ -9,12 +9,12 @@ from firm_hdl.cases.effort import digest, message_limit
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.verify.results.records import Test
+from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.options import LONGEST, Options, command_again
-from firm_hdl.verify.systems.system import wire_of
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import lay_out
 
-__all__ = ["command_of", "same_circuits", "test_of", "words_of"]
+__all__ = ["as_test", "command_of", "same_circuits", "words_of"]
 
 
 def command_of(options: Options, *names: str, distro: str | None, **more: object) -> str:
@@ -40,24 +40,12 @@ def command_of(options: Options, *names: str, distro: str | None, **more: object
     return command_again(*names, **{**first, **given, **more})
 
 
-def test_of(task: TypeUnderTest, options: Options) -> Test:
+def as_test(task: TypeUnderTest, options: Options) -> Test:
     """Return the test that runs a task with some options."""
     more = [f"bag={bag}" for bag in options.bags]
     more += [] if options.longest == LONGEST else [f"longest={options.longest}"]
-    return Test(
-        system="ts3",
-        simulator=options.simulator,
-        distro=task.distro,
-        type=task.name,
-        same=task.same,
-        wire=wire_of(task.distro, options.wire),
-        bus_bytes=options.bus_bytes,
-        options=",".join([*words_of(options), *more]),
-    )
-
-
-# Pytest takes functions with such names for tests, even if a test module only imports them.
-test_of.__test__ = False  # type: ignore[attr-defined]
+    words = [*words_of(options), *more]
+    return system.as_test("ts3", task, options, *words, simulator=options.simulator)
 
 
 def words_of(options: Options, *more: str) -> list[str]:
@@ -67,7 +55,7 @@ def words_of(options: Options, *more: str) -> list[str]:
     own += [] if options.stalled else ["no-stalls"]
     own += [] if options.broken else ["no-broken"]
     own += [] if options.references is None else [f"references={'+'.join(options.references)}"]
-    return [*own, *options.folders]
+    return own
 
 
 def same_circuits(

@@ -8,7 +8,7 @@ import pytest
 
 from firm_hdl.verify.systems.options import Options
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.verify.ts3.task import command_of, same_circuits, test_of
+from firm_hdl.verify.ts3.task import as_test, command_of, same_circuits
 from tests.frontend.workspace import make_files
 
 
@@ -64,6 +64,6 @@ def test_command_and_key_have_every_option_that_is_not_usual(options, words, key
     text = command_of(options, "p/msg/A", distro="humble")
     assert shlex.split(text) == shlex.split(f"firm-hdl verify {words} p/msg/A")
     task = TypeUnderTest(distro="humble", name="p/msg/A", same=("humble", "jazzy"))
-    test = test_of(task, options)
+    test = as_test(task, options)
     assert test.key == f"ts3 {options.simulator} humble p/msg/A {key}"
     assert test.same == ("humble", "jazzy")
