@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -13,6 +12,7 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.verify.results.file import ResultsWriter
+from firm_hdl.verify.results.oracles import OracleSum, oracle_sums, remarks_of
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request, command_again
@@ -44,7 +44,7 @@ _LABELS = {
     Failed.name: "differs",
     NotJudged.name: "not judged",
 }
-"""Texts for the verdicts of an oracle, in the order of the columns."""
+"""Texts for the verdicts of an oracle."""
 
 
 def each_distro(request: Request) -> list[Request]:
@@ -210,30 +210,24 @@ class Ts1(System):
 
     def summary(self, records: Sequence[Record], seconds: float) -> Iterator[str]:
         """Yield the verdicts on a few definitions, the numbers of each oracle, and all keys."""
-        counts: Counter[tuple[str, str]] = Counter()
-        refused: Counter[str] = Counter()
-        details: Counter[tuple[str, str, str]] = Counter()
-        is_short = len(records) <= _MOST_SHOWN
-        for record in records:
+        for record in records if len(records) <= _MOST_SHOWN else ():
             for each in record.verdicts:
-                verdict, texts = each.verdict, each.verdict.details
-                counts[each.oracle, verdict.name] += 1
-                refused[each.oracle] += each.is_refused
-                if not isinstance(verdict, Failed):
-                    details.update((each.oracle, verdict.name, text) for text in texts)
-                if is_short:
-                    said = "; ".join(texts) or "both refuse" * each.is_refused
-                    text = ": ".join(filter(None, [_LABELS[verdict.name], said]))
-                    yield f"{self.cases[record.test].full_name}  {each.oracle}  {text}"
+                said = "; ".join(each.verdict.details) or "both refuse" * each.is_refused
+                text = ": ".join(filter(None, [_LABELS[each.verdict.name], said]))
+                yield f"{self.cases[record.test].full_name}  {each.oracle}  {text}"
+        sums = {each.oracle: each for each in oracle_sums(records)}
         yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"
         for name, version in self.versions.items():
-            row = [counts[name, verdict] for verdict in _LABELS]
-            both = f"  ({refused[name]} refused by both)" if refused[name] else ""
-            yield f"{f'{name} {version}':24} {row[0]:7} {row[1]:7} {row[2]:7} {row[3]:11}{both}"
+            own = sums.get(name, OracleSum(distro=self.distro, oracle=name))
+            both = f"  ({own.refused} refused by both)" if own.refused else ""
+            yield (
+                f"{f'{name} {version}':24} {own.agree:7} {own.known:7} {own.differ:7} "
+                f"{own.not_judged:11}{both}"
+            )
         for name, why in self.missing.items():
             yield f"{name:24} is not available: {why}"
-        for (name, label, text), count in sorted(details.items()):
-            yield f"{_LABELS[label]}, {name}: {text}: {count}"
+        for remark in remarks_of(records):
+            yield f"{_LABELS[remark.verdict]}, {remark.oracle}: {remark.what}: {remark.count}"
         yield from summary_of(records, self.passes, seconds)
 
 
