@@ -105,7 +105,7 @@ class Ts3(TypesSystem):
         """Yield lines about the types, and one about the simulator of exported text."""
         yield from summary_of(records, self.passes, seconds)
         simulated = [each for each in records if each.cycles]
-        if self._version and simulated:
+        if self._request.simulator != "python" and simulated:
             passed = sum(not each.failures for each in simulated)
             yield (
                 f"{self._request.simulator}: replayed every cycle of {len(simulated)} types, "
