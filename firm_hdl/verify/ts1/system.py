@@ -218,17 +218,18 @@ class Ts1(System):
         sums = {each.oracle: each for each in oracle_sums(records)}
         yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"
         for name, version in self.versions.items():
-            own = sums.get(name, OracleSum(distro=self.distro, oracle=name))
-            both = f"  ({own.refused} refused by both)" if own.refused else ""
+            found = sums.get(name, OracleSum(distro=self.distro, oracle=name))
+            both = f"  ({found.refused} refused by both)" if found.refused else ""
             yield (
-                f"{f'{name} {version}':24} {own.agree:7} {own.known:7} {own.differ:7} "
-                f"{own.not_judged:11}{both}"
+                f"{f'{name} {version}':24} {found.agree:7} {found.known:7} {found.differ:7} "
+                f"{found.not_judged:11}{both}"
             )
         for name, why in self.missing.items():
             yield f"{name:24} is not available: {why}"
         for remark in remarks_of(records):
             yield f"{_LABELS[remark.verdict]}, {remark.oracle}: {remark.what}: {remark.count}"
-        yield from summary_of(records, self.passes, seconds)
+        own = [record for record in records if record.test in self.cases]
+        yield from summary_of(own, self.passes, seconds)
 
 
 def _universe(request: Request, folder: str) -> Universe:
