@@ -34,7 +34,7 @@ from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import first_difference
-from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.options import CaseOptions, Request
 from firm_hdl.verify.systems.system import (
     Stopwatch,
     Trial,
@@ -52,7 +52,7 @@ __all__ = ["Benches", "judge_bench"]
 WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-binding")
 
 
-def judge_bench(given: tuple[Options, str], test: Test) -> Record:
+def judge_bench(given: tuple[CaseOptions, str], test: Test) -> Record:
     """Build a type and run its bench. Errors are not raised, but are in the record.
 
     * `given`: how to build the type (its paths and wire), and the command of GHDL.
@@ -76,7 +76,7 @@ def judge_bench(given: tuple[Options, str], test: Test) -> Record:
 
 
 def _packets_and_transfers(
-    test: Test, options: Options, ghdl: str, folder: Path, watch: Stopwatch
+    test: Test, options: CaseOptions, ghdl: str, folder: Path, watch: Stopwatch
 ) -> tuple[int, int]:
     """Return the numbers of correct packets and of correct transfers of leaves."""
     library = library_of(test.distro, options)
@@ -201,7 +201,7 @@ class Benches(TypesSystem):
         super().__init__(each, request)
         self._ghdl = find_ghdl()
 
-    def _tests(self, options: Options) -> list[Test]:
+    def _tests(self, options: CaseOptions) -> list[Test]:
         return [as_test(self.name, task, options, simulator="ghdl") for task in self._tasks]
 
     @property

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from firm_hdl.verify.results.records import Seconds
 from firm_hdl.verify.results.verdict import KnownDifference, Passed
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.acceptance import accepted
 from firm_hdl.verify.ts3.task import as_test
@@ -22,7 +22,7 @@ TIME_KEY = "rosbags-time-signs"
 
 def accept(distro, name, options=None):
     """Run TS3 on a type in this process; return its record."""
-    options = options or Options()
+    options = options or CaseOptions()
     task = TypeUnderTest(distro=distro, name=name, same=(distro,))
     return accepted(options, as_test(task, options))
 

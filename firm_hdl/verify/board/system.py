@@ -39,7 +39,7 @@ from firm_hdl.verify.references.clients import find_references, may_stand_in
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.options import CaseOptions, Request
 from firm_hdl.verify.systems.system import Made, System, Trial, failure_of, run_and_record
 from firm_hdl.verify.ts3.acceptance import confirm_cases
 from firm_hdl.verify.ts3.compare import packet_differences
@@ -78,7 +78,7 @@ def judge_loop(
     talk: Talk,
     description: Description,
     loop: tuple[Topic, Topic],
-    options: Options,
+    options: CaseOptions,
     trial: Trial,
 ) -> None:
     """Send the cases of a type through a board, and add to the trial.
@@ -120,7 +120,7 @@ def judge_loop(
     trial.watch.enter("testing")
 
 
-def _judge_of(message: Message, distro: str, options: Options) -> Judge:
+def _judge_of(message: Message, distro: str, options: CaseOptions) -> Judge:
     """Return the oracle: rosbags' own definition, if the type is that of the distribution."""
     try:
         is_own = Library(distro).message(message.name) == message

@@ -20,7 +20,7 @@ __all__ = [
     "SIMULATOR_NAMES",
     "SYSTEM_NAMES",
     "WRITER_NAMES",
-    "Options",
+    "CaseOptions",
     "Request",
     "command_again",
     "option_of",
@@ -75,7 +75,7 @@ LONGEST = 1 << 18
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class CaseOptions:
     """How a type is tested."""
 
     bus_bytes: int = 8
@@ -112,7 +112,7 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request(Options):
+class Request(CaseOptions):
     """The checked arguments of ``firm-hdl verify``."""
 
     types: tuple[str, ...] = ()  # Empty: all types.
@@ -171,7 +171,7 @@ class Request(Options):
         return {n: list(v) if isinstance(v, tuple) else v for n, v in found.items()}
 
     @property
-    def each_width(self) -> list[Options]:
+    def each_width(self) -> list[CaseOptions]:
         """The options for each of the buses."""
         return [replace(self, bus_bytes=width) for width in self.widths]
 

@@ -34,7 +34,7 @@ from firm_hdl.verify.results.verdict import (
     Verdict,
     clipped,
 )
-from firm_hdl.verify.systems.options import Options, Request, command_again
+from firm_hdl.verify.systems.options import CaseOptions, Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 
 __all__ = [
@@ -128,7 +128,7 @@ class TypesSystem(System):
         """The tests of all types on all buses."""
         return [each for options in self._request.each_width for each in self._tests(options)]
 
-    def _tests(self, options: Options) -> list[Test]:
+    def _tests(self, options: CaseOptions) -> list[Test]:
         """Return the tests of all types with some options."""
         return [as_test(self.name, task, options) for task in self._tasks]
 
@@ -148,7 +148,7 @@ class TypesSystem(System):
 def as_test(
     system: str,
     task: TypeUnderTest,
-    options: Options,
+    options: CaseOptions,
     *words: str,
     simulator: str = "",
     bus_bytes: int | None = None,

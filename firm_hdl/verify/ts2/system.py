@@ -19,7 +19,7 @@ from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test, clipped_verdict
 from firm_hdl.verify.results.verdict import Counts, NotJudged
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import (
     Made,
     Trial,
@@ -144,7 +144,7 @@ class Ts2(TypesSystem):
         )
 
 
-def _checked(options: Options, test: Test) -> Record:
+def _checked(options: CaseOptions, test: Test) -> Record:
     """Read, plan and check one type. An exception becomes the verdict."""
     with Trial.of(test) as trial:
         check_plan(library_of(test.distro, options).message(test.type), options.wire, trial)

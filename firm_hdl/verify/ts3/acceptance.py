@@ -43,7 +43,7 @@ from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import PlanCoverage, Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.circuit import Circuit
@@ -70,7 +70,7 @@ WAVEFORM_FOLDER = "waveforms"
 """The folder that the command for a waveform writes to."""
 
 
-def accepted(options: Options, test: Test) -> Record:
+def accepted(options: CaseOptions, test: Test) -> Record:
     """Run all cases of the type of a test. An exception goes into the record."""
     with Trial.of(test) as trial:
         message, judge = type_and_oracle(options, trial)
@@ -78,7 +78,7 @@ def accepted(options: Options, test: Test) -> Record:
     return with_commands(options, trial.end())
 
 
-def type_and_oracle(options: Options, trial: Trial) -> tuple[Message, Judge]:
+def type_and_oracle(options: CaseOptions, trial: Trial) -> tuple[Message, Judge]:
     """Return the type of a test, and its oracle.
 
     Raises `DefinitionError`. Raises `NotJudgedError` if no oracle can judge the type.
@@ -94,7 +94,7 @@ def type_and_oracle(options: Options, trial: Trial) -> tuple[Message, Judge]:
     return message, judge
 
 
-def with_commands(options: Options, record: Record) -> Record:
+def with_commands(options: CaseOptions, record: Record) -> Record:
     """Return the record with the commands that repeat its test."""
     test = record.test
     waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
@@ -106,7 +106,7 @@ def with_commands(options: Options, record: Record) -> Record:
 
 
 def accept_message(
-    message: Message, oracle: RosbagsOracle, name: str, options: Options, trial: Trial
+    message: Message, oracle: RosbagsOracle, name: str, options: CaseOptions, trial: Trial
 ) -> None:
     """Run all cases of a message type that the oracle knows by `name`, and add to the trial."""
     wire: Any = options.wire or message.wire
@@ -146,7 +146,7 @@ def confirm_cases(
     message: Message,
     wire: Wire,
     cases: Sequence[Case],
-    options: Options,
+    options: CaseOptions,
     trial: Trial,
     oracle: RosbagsOracle,
 ) -> None:
@@ -183,7 +183,7 @@ class Acceptance:
         self,
         message: Message,
         wire: Wire,
-        options: Options,
+        options: CaseOptions,
         trial: Trial,
         max_message_bytes: int | None = None,
     ):

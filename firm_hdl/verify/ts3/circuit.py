@@ -27,7 +27,7 @@ from firm_hdl.sim.harness import Harness, RunResult
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.simulators.programs import TextSimulator, simulator
 from firm_hdl.verify.simulators.trace import Trace, read_row
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import Trial
 
 __all__ = ["Circuit", "first_wrong_port", "replay_failures"]
@@ -46,7 +46,7 @@ class Circuit:
     large to export.
     """
 
-    def __init__(self, message: Message, plan: Plan, options: Options, trial: Trial):
+    def __init__(self, message: Message, plan: Plan, options: CaseOptions, trial: Trial):
         self._message, self._plan, self._options, self._trial = message, plan, options, trial
         self._runs = 0
         self._other = simulator(options.simulator)

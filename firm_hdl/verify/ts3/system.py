@@ -11,7 +11,7 @@ from firm_hdl.verify.references.clients import find_references
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.simulators.programs import simulator
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import (
     Made,
     TypesSystem,
@@ -48,7 +48,7 @@ class Ts3(TypesSystem):
                 print(line)
         return self
 
-    def _tests(self, options: Options) -> list[Test]:
+    def _tests(self, options: CaseOptions) -> list[Test]:
         return [as_test(task, options) for task in self._tasks]
 
     @property
@@ -63,7 +63,7 @@ class Ts3(TypesSystem):
         """
         return [each for one in self._request.each_width for each in self._records(one, writer)]
 
-    def _records(self, options: Options, writer: ResultsWriter | None) -> list[Record]:
+    def _records(self, options: CaseOptions, writer: ResultsWriter | None) -> list[Record]:
         """Run all types with one set of options."""
         tests = dict(zip(self._tasks, self._tests(options), strict=True))
         same: dict[Test, Test] = {}

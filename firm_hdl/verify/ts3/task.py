@@ -10,14 +10,14 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.systems import system
-from firm_hdl.verify.systems.options import LONGEST, Options, command_again
+from firm_hdl.verify.systems.options import LONGEST, CaseOptions, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import lay_out
 
 __all__ = ["as_test", "command_of", "same_circuits", "words_of"]
 
 
-def command_of(options: Options, *names: str, distro: str | None, **more: object) -> str:
+def command_of(options: CaseOptions, *names: str, distro: str | None, **more: object) -> str:
     """Return the command that tests types again: with what `more` says, and then these options."""
     references = options.references
     given: dict[str, object] = {
@@ -40,7 +40,7 @@ def command_of(options: Options, *names: str, distro: str | None, **more: object
     return command_again(*names, **{**first, **given, **more})
 
 
-def as_test(task: TypeUnderTest, options: Options) -> Test:
+def as_test(task: TypeUnderTest, options: CaseOptions) -> Test:
     """Return the test that runs a task with some options."""
     more = [f"bag={bag}" for bag in options.bags]
     more += [] if options.longest == LONGEST else [f"longest={options.longest}"]
@@ -48,7 +48,7 @@ def as_test(task: TypeUnderTest, options: Options) -> Test:
     return system.as_test("ts3", task, options, *words, simulator=options.simulator)
 
 
-def words_of(options: Options, *more: str) -> list[str]:
+def words_of(options: CaseOptions, *more: str) -> list[str]:
     """Return what the cases of a type depend on, with `more` behind the seed, for a test's key."""
     own = [f"seed={options.seed}", *more]
     own += [] if options.most_cases is None else [f"cases={options.most_cases}"]
@@ -59,7 +59,7 @@ def words_of(options: Options, *more: str) -> list[str]:
 
 
 def same_circuits(
-    tasks: Sequence[TypeUnderTest], options: Options
+    tasks: Sequence[TypeUnderTest], options: CaseOptions
 ) -> dict[TypeUnderTest, TypeUnderTest]:
     """Return the tasks whose circuit is equal to that of an earlier task, with the earlier task.
 

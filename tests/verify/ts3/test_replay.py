@@ -13,7 +13,7 @@ from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cli import main
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.replay import replay
 from firm_hdl.verify.ts3.task import as_test
@@ -43,7 +43,7 @@ def strings(tmp_path, *packets, name=STRING, topic="/text", form="mcap"):
 
 
 def replayed(bag, name=STRING, distro="lyrical", **options):
-    given = Options(bags=(str(bag),), **options)
+    given = CaseOptions(bags=(str(bag),), **options)
     task = TypeUnderTest(distro=distro, name=name, same=(distro,))
     return replay(given, as_test(task, given))
 
