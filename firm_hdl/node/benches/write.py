@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Any
 
@@ -122,7 +123,7 @@ def _values(
         "ignores_topics": script.ignores_topics,
         "host": (HOST_ADDRESS, HOST_PORT),
         "link": description.link,
-        "answers": _address(description.link.host) or HOST_ADDRESS,
+        "answers": int(IPv4Address(description.link.host or HOST_ADDRESS)),
         "answers_port": description.link.host_port if description.link.host else HOST_PORT,
     }
 
@@ -131,14 +132,6 @@ def _most_bytes(description: Description, script: LinkScript) -> int:
     """Return the size of the longest frame that fits into a memory, in bytes."""
     sizes = [each.memory_bytes for topic in description.topics for _, each in topic.stores]
     return max([script.most_bytes, *(HEADER_BYTES + each for each in sizes)])
-
-
-def _address(text: str) -> int:
-    """Return an IPv4 address as a number; 0 for none."""
-    number = 0
-    for part in filter(None, text.split(".")):
-        number = number << 8 | int(part)
-    return number
 
 
 def _channels(ports: Sequence[ComponentPort], loop: tuple[Topic, Topic]) -> list[_Channel]:
