@@ -24,7 +24,7 @@ import firm_hdl
 from firm_hdl.export.axis_leaves import AxisPort, axis_module
 from firm_hdl.export.backend import Converters, Output, module_name
 from firm_hdl.export.manifest import digest, to_json
-from firm_hdl.export.options import Ip as Tool
+from firm_hdl.export.options import IpTool
 from firm_hdl.export.registers import register_ports
 from firm_hdl.export.templates import render
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
@@ -178,7 +178,7 @@ def _streams(by_name: Mapping[str, Any]) -> Iterator[Bus]:
             yield Bus(name=base, kind="axis", mode=mode, ports=own)
 
 
-def ip_files(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
+def ip_files(tool: IpTool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
     """Return the files of a folder's IP, by paths in it.
 
     * `name`: name of the folder, with which names of designs begin.
@@ -281,7 +281,7 @@ def _quartus_files(ip: Ip) -> dict[str, str]:
     return {f"{ip.name}_hw.tcl": script, f"{ip.name}.qip": listed, **ip.files}
 
 
-def _for_tool(tool: Tool, ip: Ip) -> Ip:
+def _for_tool(tool: IpTool, ip: Ip) -> Ip:
     """For Quartus, add AWPROT and ARPROT to AXI4-Lite: they are required (IHI 0022, Table B1-1)."""
     if tool != "quartus" or ip.table is None:
         return ip
@@ -421,7 +421,7 @@ def _tied(plan: Plan, ports: Sequence[Any], way: Direction) -> dict[str, int]:
     return found
 
 
-def ip_facts(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, Any]:
+def ip_facts(tool: IpTool, name: str, designs: Sequence[Ip]) -> dict[str, Any]:
     """Return the manifest's entry `ip`."""
     designs = [_for_tool(tool, ip) for ip in designs]
     component = {

@@ -35,7 +35,7 @@ from firm_hdl.export.message_ports import (
     record_files,
     struct_files,
 )
-from firm_hdl.export.options import Ip as Tool
+from firm_hdl.export.options import IpTool
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
@@ -87,7 +87,7 @@ def build_node(
     force: bool = False,
     stimuli: Stimuli | None = None,
     datasheet: bool = False,
-    ip: Tool | None = None,
+    ip: IpTool | None = None,
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -173,7 +173,7 @@ def _files(
     own: AcceleratorFiles,
     *,
     placed: Mapping[str, Any] | None,
-    ip: Tool | None,
+    ip: IpTool | None,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
