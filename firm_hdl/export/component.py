@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from itertools import product
 from typing import Any, Literal
 
-from amaranth.hdl import Fragment, Shape, Value
+from amaranth.hdl import Fragment, Value
 from amaranth.hdl._xfrm import DomainCollector
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In
@@ -42,7 +42,7 @@ from firm_hdl.export.message_ports import (
 from firm_hdl.export.top import AXIS_CLOCKS, Pin, PlainTop, check_input_bits
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
-from firm_hdl.gateware.signatures import MessageSignature, packet_layout
+from firm_hdl.gateware.signatures import MessageSignature, bus_bytes_of
 from firm_hdl.names.identifiers import flat_names, identifier
 from firm_hdl.plan import build_plan
 from firm_hdl.vhdl.convert import convert
@@ -92,7 +92,7 @@ def parts_of(
         for path, member, value in component.signature.flatten(component)
     ]
     lanes = {
-        path[:-1]: _lanes(value)
+        path[:-1]: bus_bytes_of(value)
         for path, _, value in members
         if path[-1:] == ("payload",) and has_axis(path[:-1])
     }
@@ -102,18 +102,6 @@ def parts_of(
             last = _AXIS.get(inner[-1], inner[-1]) if count else inner[-1]
             mask = count if last == "tkeep" else 0
             yield _Part(inner, (*inner[:-1], last), member.flow, each, mask)
-
-
-def _lanes(payload: Any) -> int:
-    """Return the bytes of a beat of a packet stream, and 0 for any other stream."""
-    shape = payload.shape()
-    if not isinstance(shape, data.StructLayout) or "data" not in shape.members:
-        return 0
-    lanes = Shape.cast(shape.members["data"]).width // 8
-    try:
-        return lanes if shape == packet_layout(lanes) else 0
-    except ValueError:
-        return 0
 
 
 def _fields(path: Path, value: Any) -> Iterator[tuple[Path, Value]]:

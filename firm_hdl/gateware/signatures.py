@@ -33,6 +33,7 @@ __all__ = [
     "PartSignature",
     "Status",
     "StatusSignature",
+    "bus_bytes_of",
     "leaf_shape",
     "leaf_streams",
     "packet_layout",
@@ -119,6 +120,18 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
     return data.StructLayout(
         {"data": data.ArrayLayout(8, bus_bytes), "count": range(bus_bytes + 1), "last": 1}
     )
+
+
+def bus_bytes_of(payload: Any) -> int:
+    """Return the bytes of a beat, given the payload of a packet stream; 0 for any other payload."""
+    shape = payload.shape()
+    if not isinstance(shape, data.StructLayout) or "data" not in shape.members:
+        return 0
+    lanes = Shape.cast(shape.members["data"]).width // 8
+    try:
+        return lanes if shape == packet_layout(lanes) else 0
+    except ValueError:
+        return 0
 
 
 def PacketSignature(bus_bytes: int) -> stream.Signature:
