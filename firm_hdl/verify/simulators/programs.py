@@ -12,12 +12,10 @@ import functools
 import re
 import tempfile
 from collections.abc import Callable, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any, Protocol
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
+from firm_hdl.export.templates import templates
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import module_name
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
@@ -272,16 +270,5 @@ def _write_verilog(bench: str, trace: Trace, tops: Sequence[Top], folder: Path) 
 def _bench(name: str, trace: Trace, **more: Any) -> str:
     """Write a bench for a trace: the template of that name, with further variables."""
     files = {"STIMULI": _STIMULI, "RESULTS": _RESULTS}
-    template = _templates().get_template(f"{name}.j2")
+    template = templates(_HERE).get_template(f"{name}.j2")
     return template.render(trace=trace, ARESETN=ARESETN, **files, **more)
-
-
-@cache
-def _templates() -> Environment:
-    return Environment(
-        loader=FileSystemLoader(_HERE),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
