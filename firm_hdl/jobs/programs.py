@@ -25,8 +25,10 @@ from firm_hdl.jobs.processes import ToolError, run_tool
 __all__ = [
     "Program",
     "ProgramMissingError",
+    "errors_in",
     "find_compiler",
     "find_ghdl",
+    "find_nextpnr",
     "find_package",
     "find_packaged",
     "find_program",
@@ -63,6 +65,13 @@ class Program:
     title: str  # Name in messages.
     command: tuple[str, ...]  # First words of a command line.
     version: str
+
+
+def errors_in(log: str, output: str) -> str:
+    """Return the first lines with errors in a log or in an output, or the last of the output."""
+    lines = [line.strip() for line in f"{log}\n{output}".splitlines()]
+    errors = [line for line in lines if line.startswith("ERROR")]
+    return " ".join(errors[:2] or [line.strip() for line in output.splitlines()[-2:]])
 
 
 def which(name: str) -> str | None:
@@ -241,6 +250,20 @@ def find_packaged(
     command = yowasp_command(package, program)
     packaged = {package: command} if command else {}
     return _first_that_runs(title, packaged, program, option, version, is_run=is_run)
+
+
+def find_nextpnr(package: str, program: str, install: str, *, is_run: bool = True) -> Program:
+    """Find a nextpnr; `package`, `program` and `is_run` as for `find_packaged`.
+
+    * `install`: how to install it, for the message.
+
+    Raises `ProgramMissingError`. Raises `ToolError` if the package is installed and does not run.
+    """
+    version = r"Version (?:nextpnr-)?(\S+?)\)"
+    found = find_packaged(program, package, program, "--version", version, is_run=is_run)
+    if found is None:
+        raise ProgramMissingError(f"{program} is not installed{install}")
+    return found
 
 
 def yowasp_command(package: str, program: str) -> tuple[str, ...] | None:
