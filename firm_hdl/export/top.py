@@ -37,6 +37,7 @@ __all__ = [
     "Top",
     "add_domain",
     "check_input_bits",
+    "converter_of",
     "field_of",
     "leaf_members",
     "leaf_names",
@@ -249,6 +250,12 @@ class PlainTop(Component):
             else:
                 m.d.comb += pin.value.eq(value)
         return m
+
+
+def converter_of(message: Message, plan: Plan, direction: Direction) -> Deserializer | Serializer:
+    """Return a converter with a plan."""
+    core = Deserializer if direction == "deserializer" else Serializer
+    return core(message, plan=plan)
 
 
 class Top(PlainTop):
