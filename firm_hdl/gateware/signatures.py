@@ -123,15 +123,19 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
 
 
 def bus_bytes_of(payload: Any) -> int:
-    """Return the bytes of a beat, given the payload of a packet stream; 0 for any other payload."""
+    """Return the bytes of a beat, given the payload of a packet stream; 0 for any other payload.
+
+    The number of bytes may be one that no converter has.
+    """
     shape = payload.shape()
-    if not isinstance(shape, data.StructLayout) or "data" not in shape.members:
+    if not isinstance(shape, data.StructLayout) or list(shape.members) != ["data", "count", "last"]:
         return 0
-    lanes = Shape.cast(shape.members["data"]).width // 8
-    try:
-        return lanes if shape == packet_layout(lanes) else 0
-    except ValueError:
+    lanes = shape.members["data"]
+    if not isinstance(lanes, data.ArrayLayout) or Shape.cast(lanes.elem_shape).width != 8:
         return 0
+    counts = Shape.cast(shape.members["count"]).width
+    fits = counts == lanes.length.bit_length() and Shape.cast(shape.members["last"]).width == 1
+    return lanes.length if fits else 0
 
 
 def PacketSignature(bus_bytes: int) -> stream.Signature:
