@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
-from typing import Any, Literal
+from typing import Any
 
 from amaranth.hdl import Fragment, Value
 from amaranth.hdl._xfrm import DomainCollector
@@ -39,6 +39,7 @@ from firm_hdl.export.message_ports import (
     record_files,
     struct_files,
 )
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.top import AXIS_CLOCKS, Pin, PlainTop, check_input_bits
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
@@ -56,12 +57,9 @@ _AXIS = {"data": "tdata", "count": "tkeep", "last": "tlast", "valid": "tvalid", 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComponentPort:
-    """A port of a top level."""
+class ComponentPort(PlainPort):
+    """A port of the top level of a component."""
 
-    name: str
-    direction: Literal["in", "out"]
-    width: int  # Width in bits.
     signed: bool
     member: str  # The member of the component that it belongs to, or what it is.
 

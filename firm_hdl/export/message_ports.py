@@ -176,17 +176,21 @@ def record_files(
 
 
 def _line(port: ComponentPort) -> Line:
-    kind = "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
-    return port.name, f"{port.direction:3} {kind}", f"{port.member}."
+    return Line(port.name, port.direction, port.vhdl_type, f"{port.member}.")
 
 
 def _lines(port: RecordPort, package: str) -> list[Line]:
     root = port.tree().root
-    forwards, backwards = ("out", "in ") if port.direction == "deserializer" else ("in ", "out")
+    forwards, backwards = ("out", "in") if port.direction == "deserializer" else ("in", "out")
     # Two types of a design may have the same name, in packages of their own.
     return [
-        (port.name, f"{forwards} {package}.{root.type}", f"Data and valid of {port.message.name}."),
-        (port.ready, f"{backwards} {package}.{root.ready_type}", "Ready of the fields."),
+        Line(
+            port.name,
+            forwards,
+            f"{package}.{root.type}",
+            f"Data and valid of {port.message.name}.",
+        ),
+        Line(port.ready, backwards, f"{package}.{root.ready_type}", "Ready of the fields."),
     ]
 
 
@@ -232,7 +236,7 @@ def _ports(ports: Sequence[ComponentPort], messages: Sequence[RecordPort]) -> It
     ways = {"in": "input", "out": "output"}
     lines: list[tuple[str, str, str, str]] = []
     for port in other_ports(ports, messages):
-        kind = "logic" if port.width == 1 else f"logic [{port.width - 1}:0]"
+        kind = f"logic {port.verilog_range}".rstrip()
         lines.append((ways[port.direction], kind, port.name, f"{port.member}."))
     for each in messages:
         root, own = each.tree(WORDS).root, package_name(each.tree(WORDS).package.name)
