@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.remarks import remark
@@ -25,10 +24,10 @@ class AxisPort(PlainPort):
     inner_width: int  # At most `width`. An input ignores the bits above, and an output has 0 there.
 
 
-def axis_ports(ports: Sequence[Any], members: Mapping[str, str]) -> list[AxisPort]:
+def axis_ports(ports: Sequence[PlainPort], members: Mapping[str, str]) -> list[AxisPort]:
     """List the ports of the module.
 
-    * `ports`: ports of the design, each with `name`, `direction` and `width`.
+    * `ports`: ports of the design.
     * `members`: the ports of leaves: ``data``, ``last``, ``valid`` or ``ready``, by the name of the
       port.
     """

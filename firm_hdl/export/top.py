@@ -191,7 +191,7 @@ class Pin:
     is_count: bool = False  # The port is `tkeep`, and `value` is the number of bytes.
 
 
-def check_input_bits(what: str, ports: Iterable[Any]) -> None:
+def check_input_bits(what: str, ports: Iterable[PlainPort]) -> None:
     """Refuse a design with more input bits than Amaranth elaborates.
 
     Raises `UserError`.

@@ -36,6 +36,7 @@ from firm_hdl.export.message_ports import (
     struct_files,
 )
 from firm_hdl.export.options import IpTool
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
@@ -302,7 +303,7 @@ def _ip(
     """Return the node as IP. Messages that come out of it are AXI4-Stream."""
     module = verilog_module(name)
     members = {name: port.member for each in messages for name, port in each.ports.items()}
-    shown: Sequence[Any] = ports
+    shown: Sequence[PlainPort] = ports
     if members:
         inner, module = module, f"{name}_axis_verilog"
         shown = axis_ports(ports, members)
