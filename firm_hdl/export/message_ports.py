@@ -143,8 +143,11 @@ def record_files(
     * `vhdl_ports`: names of its ports, by those of the netlist.
     * `header`: lines of a comment at the head of the entity's file.
 
-    Returns: texts by file name, in compile order; they compile after the design.
+    Returns: texts by file name, in compile order; they compile after the design. None without
+    messages.
     """
+    if not messages:
+        return {}
     files: dict[str, str] = {}
     # An actual is the port of the same name, unless it is a part of a record.
     actuals = {port.name: port.name for port in ports}
@@ -209,8 +212,11 @@ def struct_files(
     * `kind`: what the design is: ``"node"``.
     * `header`: lines of a comment at the head of the module's file.
 
-    Returns: texts by file name, in compile order; then ``files.f`` and waivers of Verilator.
+    Returns: texts by file name, in compile order; then ``files.f`` and waivers of Verilator. None
+    without messages.
     """
+    if not messages:
+        return {}
     files: dict[str, str] = {}
     for each in messages:
         files |= struct_packages(each.plan, each.tree(WORDS))

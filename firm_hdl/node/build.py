@@ -185,13 +185,8 @@ def _files(
     netlist = rtlil.netlist_of(circuit)
     node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
-    records: dict[str, str] = {}
-    structs: dict[str, str] = {}
-    if messages:
-        records = record_files(
-            name, ports, messages, kind="node", vhdl_ports=vhdl_ports, header=header
-        )
-        structs = struct_files(name, module, ports, messages, kind="node", header=header)
+    records = record_files(name, ports, messages, kind="node", vhdl_ports=vhdl_ports, header=header)
+    structs = struct_files(name, module, ports, messages, kind="node", header=header)
     is_vhdl = own.language == "vhdl"
     inside = {file.removeprefix("vhdl/"): text for file, text in own.texts.items()}
     vhdl = {**(inside if is_vhdl else {}), **node.files, **records}
