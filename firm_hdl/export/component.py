@@ -265,13 +265,13 @@ def build_component(
         header = f"{name}: {type(component).__name__}\nMade by firm-hdl {firm_hdl.__version__}\n"
         netlist = rtlil.netlist_of(circuit)
         vhdl = convert(netlist, name=name, header=header)
-        vhdl_ports = vhdl.entities[vhdl.top].ports
+        if vhdl.top != name:
+            raise UserError(f"The VHDL of every design uses the name '{name}' itself")
+        vhdl_ports = vhdl.entities[name].ports
         records = record_files(
             name, plain.ports, messages, kind="design", vhdl_ports=vhdl_ports, header=header
         )
         structs = struct_files(name, module, plain.ports, messages, kind="design", header=header)
-        if vhdl.top != name:
-            raise UserError(f"The VHDL of every design uses the name '{name}' itself")
         owners = {"The design": vhdl.files, "its messages": records, "its structs": structs}
         if shared := shared_unit(owners):
             raise UserError(f"{shared}; give the design another name")
