@@ -86,7 +86,7 @@ MAY_IMPORT["verify"] = {
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
-    *("model", "frontend", "wire", "plan", "gateware", "export"),
+    *("model", "frontend", "wire", "plan", "export"),
 }
 MAY_IMPORT["bench"] = {
     *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),

@@ -13,11 +13,9 @@ from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.fusesoc import STALLS, copied, fileset, simulation
-from firm_hdl.export.templates import text_of
+from firm_hdl.export.templates import templates, text_of
 from firm_hdl.node.benches.script import FRAMES, LinkScript
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.frame import HEADER_BYTES
@@ -157,17 +155,8 @@ def _channels(ports: Sequence[ComponentPort], loop: tuple[Topic, Topic]) -> list
     return found
 
 
-_templates = Environment(
-    loader=FileSystemLoader(Path(__file__).parent),
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-    keep_trailing_newline=True,
-)
-
-
 def _render(template: str, **values: Any) -> str:
-    return _templates.get_template(f"{template}.j2").render(values)
+    return templates(Path(__file__).parent).get_template(f"{template}.j2").render(values)
 
 
 def bench_core(name: str) -> dict[str, dict[str, Any]]:

@@ -9,6 +9,7 @@ from math import ceil, log2
 from typing import Any, TypeAlias
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Span
+from firm_hdl.export.ports import verilog_range
 from firm_hdl.node.bitstream.board import LINKS, Board
 from firm_hdl.node.bitstream.families import MOST_DEVIATION, Pin, Pll
 from firm_hdl.node.description import Description
@@ -291,7 +292,7 @@ def _verilog(
         inside.append(f"  assign constant_{pin.site} = 1'b{int(level)};\n")
     for port in ports:
         width = len(port.pins)
-        vector = f"[{width - 1}:0] " if width > 1 else ""
+        vector = verilog_range(width)
         declared.append(f"{port.direction} wire {vector}{port.name}")
         low = "".join(str(int(pin.is_low)) for pin in reversed(port.pins))
         inverted = f" ^ {width}'b{low}" if "1" in low else ""
