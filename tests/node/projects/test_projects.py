@@ -293,7 +293,7 @@ class Clocks(type):
         cls.divisors = min(both, key=lambda each: abs(1000 / math.prod(each) - mhz))
 
 
-def fake_pynq(node, address=0x1000_0000, size=1 << 18):
+def fake_pynq(node, address=0x1000_0000, size=1 << 19):
     """Return a module like PYNQ's: an overlay with a DMA, and a node behind it."""
     seen, lock = np.zeros(size, "u1"), threading.RLock()
     fabric = Fabric(node)
