@@ -24,6 +24,7 @@ from firm_hdl.files import write_new
 from firm_hdl.node.build import design_name
 from firm_hdl.node.description import Description
 from firm_hdl.node.projects.notebook import notebook
+from firm_hdl.node.register_map import register_map
 
 __all__ = [
     "BOARDS",
@@ -127,6 +128,10 @@ def write_project(
         "node_word": shlex.quote(node),
         "node_file": shlex.quote(os.path.basename(node)),
         "has_accelerator": bool(description.accelerator),
+        # Bits of an address of the node's own registers; 0: it has none on AXI.
+        "register_bits": register_map(description).address_bits
+        if description.registers == "axi4lite"
+        else 0,
     }
     files = {
         template.rpartition("/")[2].replace("NAME", name): render(template, **values)
