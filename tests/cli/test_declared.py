@@ -43,7 +43,7 @@ DEFAULTS = {
     ),
     "board": (
         ["init", "kria"],
-        {"action": "init", "board": "kria", "file": None, "out": None},
+        {**ORIGINS, "action": "init", "board": "kria", "file": None, "out": None},
     ),
     "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),

@@ -130,7 +130,6 @@ QUOTES = [
     ("howto/systemverilog.md", "systemverilog", "sv_motor/motor.sv"),
     ("howto/verilog.md", "verilog", "cocotb_motor/motor.v"),
     ("howto/cocotb.md", "py", "cocotb_motor/test_motor.py"),
-    ("howto/litex.md", "py", "litex/soc.py"),
     ("howto/amaranth.md", "py", "half_speed.py image_filter.py cloud_filter.py soc_part.py"),
 ]
 
