@@ -74,8 +74,8 @@ def workdir(tmp_path, monkeypatch):
     return tmp_path
 
 
-# Two deserializers and a gate with a wide bus take as long as the other filters together.
-LONG = {"cloud_filter"}
+# Simulations of seconds, of converters that other examples have, too.
+LONG = {"cloud_filter", "image_filter", "soc_part"}
 
 
 @pytest.mark.snapshot
