@@ -92,8 +92,8 @@ def test_a_clock_that_is_none_is_an_error(file, capsys):
         assert f"error: {error}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("link", ["udp", "tcp"])
-@pytest.mark.parametrize("lines", [0, 3])
+# Both links, with lines and without.
+@pytest.mark.parametrize(("link", "lines"), [("udp", 0), ("tcp", 3)])
 def test_the_end_of_the_input_ends_it_without_a_board(
     file, line_file, capsys, monkeypatch, link, lines
 ):
