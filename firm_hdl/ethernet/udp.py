@@ -18,6 +18,7 @@ __all__ = [
     "MOST_PAYLOAD",
     "DatagramReader",
     "StoreSignature",
+    "UdpForwarder",
     "UdpReceiver",
     "UdpTransmitter",
 ]
@@ -153,6 +154,82 @@ class UdpReceiver(wiring.Component):
             with m.If(commit):
                 m.d.sync += tail.eq(at)
         m.d.sync += waiting.eq(waiting + commit - self.store.release)
+        return m
+
+
+class UdpForwarder(wiring.Component):
+    """Pass datagrams on as they come, and say with the last byte whether they are right.
+
+    What a :class:`UdpReceiver` would not store has `error`, or nothing comes of it. A byte leaves
+    when the next one has come, the last one 2 cycles after the `end`.
+
+    Members
+    -------
+    datagrams, check, right, no_port, wrong, empty : as those of a :class:`UdpReceiver`
+    received : Out(DatagramSignature(1))
+        Cannot be held.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "datagrams": In(Ipv4Signature()),
+                "check": In(check_state_layout()),
+                "right": In(1),
+                "received": Out(DatagramSignature(1)),
+                "no_port": Out(1),
+                "wrong": Out(1),
+                "empty": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        came, header, check = self.datagrams.bytes, self.datagrams.header, self.check
+        out = self.received
+        byte, has_byte = Signal(8), Signal()
+        ports, length = Signal(32), Signal(16)
+        ours, comes, ends, closes, fits, right = (
+            Signal(name=name) for name in ("ours", "comes", "ends", "closes", "fits", "is_right")
+        )
+        m.d.comb += [
+            ours.eq(header.udp & header.first & ~header.more),
+            comes.eq(
+                came.valid
+                & ~came.payload.end
+                & (header.to_node | header.to_group)
+                & ours
+                & (header.place == 20)
+            ),
+            right.eq(ends & self.right & fits),
+        ]
+        m.d.sync += [
+            # All bytes have come a cycle before `ends`.
+            fits.eq(check.length == header.length),
+            length.eq(check.length - HEADER_BYTES),
+            closes.eq(came.valid & came.payload.end),
+            ends.eq(came.valid & came.payload.end & came.payload.good & ours),
+            self.no_port.eq(ends & ~check.port),
+            self.wrong.eq(ends & check.port & ~(self.right & fits)),
+            self.empty.eq(right & check.port & (length == 0)),
+            out.valid.eq(0),
+            out.payload.data.eq(byte),
+            out.payload.last.eq(closes),
+            out.payload.last_be.eq(closes),
+            out.payload.error.eq(~right),
+        ]
+        m.d.comb += [
+            out.payload.length.eq(length),
+            out.payload.ip_address.eq(header.source),
+            out.payload.src_port.eq(ports[16:]),
+            out.payload.dst_port.eq(ports[:16]),
+        ]
+        with m.If(comes & (header.index < 4)):
+            m.d.sync += ports.eq(Cat(came.payload.data, ports))
+        with m.If(closes):
+            m.d.sync += [out.valid.eq(has_byte), has_byte.eq(0)]
+        with m.Elif(comes & (header.index >= HEADER_BYTES) & check.port):
+            m.d.sync += [out.valid.eq(has_byte), byte.eq(came.payload.data), has_byte.eq(1)]
         return m
 
 

@@ -157,7 +157,8 @@ BAD = [
 ]
 
 
-def test_bad_frames_leave_no_trace_but_a_count():
+@pytest.mark.parametrize("memory_bytes", by_depth([0], [0, 4096]))
+def test_bad_frames_leave_no_trace_but_a_count(memory_bytes):
     """After each of them comes a good one, as soon as Ethernet allows."""
     # Half of them are enough: `python -m lab.ethernet fuzz` tries hundreds of thousands.
     bad = by_depth(BAD[::2], BAD)
@@ -165,7 +166,7 @@ def test_bad_frames_leave_no_trace_but_a_count():
     for count, (_, frame) in enumerate(bad):
         steps += [frame, wire(udp(count + 1))]
         want += come(count + 1)
-    seen = run(steps, gap=12)
+    seen = run(steps, settings(memory_bytes=memory_bytes), gap=12)
     assert seen.datagrams == want
     assert seen.frames == []
     for name in seen.drops:
@@ -232,7 +233,7 @@ def fragments(size, ident, cut=24, src=HOST):
 
 
 def test_fragments_in_order_become_datagrams_and_others_are_dropped():
-    own = settings(fragment_bytes=4096, tick_bits=8)
+    own = settings(memory_bytes=0, fragment_bytes=4096, tick_bits=8)
     a, b, c = fragments(60, 1), fragments(30, 1, src=OTHER), fragments(41, 2)
     wrong, lost, late = fragments(20, 3), fragments(60, 4), fragments(33, 5)
     damaged = fragments(90, 6)[0]

@@ -86,17 +86,20 @@ class EthernetLink(wiring.Component):
         m = Module()
         link = self.description.link
         own = IPv4Interface(link.address)
+        is_apart = link.ethernet != "mii" and self.description.clock_hz != _GIGABIT_HZ
+        # A participant stores datagrams by itself, if it has the clock of the edge.
+        fragment_bytes, stores = _fragment_bytes(self.description), is_apart or link.kind != "rtps"
+        is_split = not stores and fragment_bytes > 0
         upper: UdpLink | RtpsLink
         ports: tuple[int, ...] = (link.port,)
         groups: tuple[int, ...] = ()
         if link.kind == "rtps":
             ports = tuple(ports_of_link(self.description))
             groups = (int(IPv4Address(MULTICAST_GROUP)),)
-            m.submodules.rtps = upper = RtpsLink(self.description)
+            m.submodules.rtps = upper = RtpsLink(self.description, has_joined=is_split)
             m.d.comb += [upper.nonce.eq(self.nonce), upper.idle.eq(self.idle)]
         else:
             m.submodules.udp = upper = UdpLink(self.description.bus_bytes, link)
-        is_apart = link.ethernet != "mii" and self.description.clock_hz != _GIGABIT_HZ
         phy = PHYS[link.ethernet]()
         network = EthernetEdge(
             EthernetSettings(
@@ -106,8 +109,8 @@ class EthernetLink(wiring.Component):
                 gateway=int(IPv4Address(link.gateway)) if link.gateway else 0,
                 ports=ports,
                 groups=groups,
-                memory_bytes=1 << 14 if is_apart else 1 << 12,
-                fragment_bytes=_fragment_bytes(self.description),
+                memory_bytes=(1 << 14 if is_apart else 1 << 12) if stores else 0,
+                fragment_bytes=fragment_bytes,
             )
         )
         wiring.connect(m, phy.pins, wiring.flipped(getattr(self, link.ethernet)))
@@ -120,6 +123,8 @@ class EthernetLink(wiring.Component):
             m.submodules.phy, m.submodules.network = phy, network
             wiring.connect(m, network.received, upper.datagrams_in)
             wiring.connect(m, upper.datagrams_out, network.sent)
+            if isinstance(upper, RtpsLink) and is_split:
+                wiring.connect(m, network.joined, upper.joined_in)
         m.d.comb += [*passes(upper.received, self.received), *passes(self.sent, upper.sent)]
         for name in upper.counters.shape().members:
             m.d.comb += self.counters[name].eq(upper.counters[name])

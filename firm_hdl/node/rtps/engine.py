@@ -59,7 +59,7 @@ _REQUESTS = 32
 # How GUID prefixes of Fast DDS begin, which answers a first ACKNACK at once if its base is 0.
 _FAST_DDS = 0x0F01
 # How often a sample is tried whose topic has not passed on the one before.
-_MOST_PATIENCE = 255
+_MOST_PATIENCE = 1023
 _READER_BIT = 2
 _STATIC_PARTICIPANTS = 4
 _LITTLE, _FINAL = 1, 2
@@ -165,6 +165,7 @@ class Engine(wiring.Component):
         self._declare(m)
         self._ticks(m)
         self._compare(m)
+        is_builtin = self._sweep < self.first_row
         with m.FSM():
             self._start(m)
             with m.State("IDLE"):
@@ -179,6 +180,9 @@ class Engine(wiring.Component):
                     m.next = "ANNOUNCE"
                 with m.Elif(self.histories.waits & self._quiet):
                     m.next = "INTAKE"
+                with m.Elif(is_builtin & ~self._live.bit_select(self._sweep[2:], 1)):
+                    # Its rows are written anew before they count again.
+                    m.d.sync += self._sweep.eq(Cat(Const(0, 2), self._sweep[2:] + 1))
                 with m.Else():
                     m.d.sync += self._at.eq(self._sweep)
                     m.next = "ROW"
@@ -243,6 +247,9 @@ class Engine(wiring.Component):
         self._young = Array(Signal(2, name=f"young_{n}") for n in range(peers))
         self._dying = Array(Signal(2, name=f"dying_{n}") for n in range(peers))
         self._sweep, self._turn, self._in_event = Signal(range(rows)), Signal(), Signal()
+        # The last row that a sweep comes to, and the last valid one that this sweep has come to.
+        self._top = Signal(range(rows), init=self.first_row)
+        self._seen = Signal(range(rows), init=self.first_row)
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
         # How many of the oldest samples of a writer may give way.
@@ -456,11 +463,11 @@ class Engine(wiring.Component):
         event, row = self.events.payload, self._row
         is_answer = (event.kind == EventKind.ACKNACK) | (event.kind == EventKind.NACK_FRAG)
         with m.State("EVENT"):
+            key = Mux(is_answer, event.reader, event.writer)
             m.d.sync += [
                 self._accepts.eq(0),
-                self._key.eq(Mux(is_answer, event.reader, event.writer)),
+                self._key.eq(key),
             ]
-            m.next = "FIND"
             with m.If(event.kind == EventKind.SOURCE):
                 m.next = "FIND_PEER"
             with m.Elif(event.kind == EventKind.PARTICIPANT):
@@ -470,6 +477,13 @@ class Engine(wiring.Component):
             with m.Elif(event.kind == EventKind.PARTICIPANT_GONE):
                 self._kill(m, self._peer)
                 m.next = "DONE"
+            with m.Else():
+                # Endpoints of SEDP have their rows, and all others those behind.
+                is_builtin = key[30:] == 3
+                m.d.sync += self._at.eq(
+                    Mux(is_builtin, Cat(Const(0, 2), self._peer), self.first_row)
+                )
+                m.next = "FIND"
 
         with m.State("FIND"):
             is_same = row.valid & (row.peer == self._peer) & (row.remote == self._key)
@@ -711,7 +725,7 @@ class Engine(wiring.Component):
 
         with m.State("SAMPLED"):
             m.d.comb += self._rows.writes.eq(1)
-            self._begin_scan(m)
+            self._begin_scan(m, self.first_row)
             m.next = "DONE"
             with m.If(self._accepts), m.Switch(event.kind):
                 with m.Case(EventKind.ENDPOINT):
@@ -796,6 +810,9 @@ class Engine(wiring.Component):
                 m.d.comb += self.unsent.eq(~self._has_free)
                 with m.If(self._has_free):
                     m.d.sync += self._row_at.eq(self._free)
+                    for last in (self._top, self._seen):
+                        with m.If(self._free > last):
+                            m.d.sync += last.eq(self._free)
                     m.next = "MATCHED"
         with m.State("MATCHED"):
             # A volatile reader begins with the next sample, any other one with the history.
@@ -853,6 +870,8 @@ class Engine(wiring.Component):
             m.next = "ROW_STATE"
             with m.If(~self._rows.word[0]):
                 m.next = "NEXT"
+            with m.Elif(self._row_at > self._seen):
+                m.d.sync += self._seen.eq(self._row_at)
         with m.State("ROW_STATE"):
             counts = [len(self.writers), len(self.readers), 1]
             is_fixed = row.local < _FIXED_WRITERS
@@ -884,10 +903,12 @@ class Engine(wiring.Component):
             m.next = "NEXT"
         with m.State("NEXT"):
             m.d.sync += self._sweep.eq(self._sweep + 1)
-            with m.If(self._sweep == self.rows - 1):
+            with m.If(self._sweep == self._top):
                 m.d.comb += self.assembly.tick.eq(self._tick_due)
                 m.d.sync += [
                     self._sweep.eq(0),
+                    self._top.eq(self._seen),
+                    self._seen.eq(self.first_row),
                     self._quiet.eq(self._clean),
                     self._clean.eq(1),
                     self._tick_pass.eq(self._tick_due),
@@ -1044,7 +1065,7 @@ class Engine(wiring.Component):
             m.d.sync += [Value.cast(row).eq(self._rows.word), self._row_at.eq(self._at_word)]
             with m.If(self._has_row & is_waited & is_of & (ahead < freed)):
                 m.d.sync += freed.eq(Mux(ahead < 0, 0, ahead))
-            with m.If(self._has_row & (self._row_at == self.rows - 1)):
+            with m.If(self._has_row & (self._row_at == self._top)):
                 m.next = "FREED"
         with m.State("FREED"):
             m.d.comb += asked.answers.eq(1)
