@@ -21,7 +21,14 @@ from firm_hdl.ethernet.mac import MacReceiver, MacTransmitter
 from firm_hdl.ethernet.sender import FrameSender
 from firm_hdl.ethernet.slots import FrameSlots
 from firm_hdl.ethernet.streams import SymbolSignature
-from firm_hdl.ethernet.udp import DatagramReader, UdpForwarder, UdpReceiver, UdpTransmitter
+from firm_hdl.ethernet.udp import (
+    WORD_BYTES,
+    DatagramReader,
+    UdpForwarder,
+    UdpReceiver,
+    UdpTransmitter,
+    join_words,
+)
 
 __all__ = ["EthernetEdge", "EthernetSettings", "drops_layout"]
 
@@ -49,6 +56,12 @@ class EthernetSettings:
     fragment_bytes: int = 0
     # A tick has `1 << tick_bits` cycles. It should be 50 to 100 ms: 23 bits at 125 MHz.
     tick_bits: int = 23
+
+    # Bytes of a word of datagrams to send: 1 or 4.
+    sent_bytes: int = 1
+    # So many bytes of a datagram may be missing when its frame begins. If it is not 0, datagrams to
+    # send must not pause, and be no larger than a frame.
+    ahead_bytes: int = 0
 
     @property
     def is_split(self) -> bool:
@@ -89,7 +102,7 @@ class EthernetEdge(wiring.Component):
     joined : Out(DatagramSignature(1))
         Only without memory, but with some for fragments: datagrams that came in fragments. May be
         held.
-    sent : In(DatagramSignature(1))
+    sent : In(DatagramSignature(settings.sent_bytes))
         `ip_address` is a machine or a group.
     drops : Out(drops_layout())
         Strobes.
@@ -103,7 +116,7 @@ class EthernetEdge(wiring.Component):
                 "symbols_out": Out(SymbolSignature()),
                 "received": Out(DatagramSignature(1)),
                 **({"joined": Out(DatagramSignature(1))} if settings.is_split else {}),
-                "sent": In(DatagramSignature(1)),
+                "sent": In(DatagramSignature(settings.sent_bytes)),
                 "drops": Out(drops_layout()),
             }
         )
@@ -122,9 +135,9 @@ class EthernetEdge(wiring.Component):
         udp: UdpReceiver | UdpForwarder
         udp = UdpReceiver(own.memory_bytes) if own.memory_bytes else UdpForwarder()
         m.submodules.udp_receiver = udp
-        m.submodules.udp_transmitter = transmitter = UdpTransmitter(own.address)
+        m.submodules.udp_transmitter = transmitter = UdpTransmitter(own.address, own.ahead_bytes)
         m.submodules.replies = replies = FrameSlots(4, header_bytes=16)
-        m.submodules.datagrams = datagrams = FrameSlots(2, header_bytes=32)
+        m.submodules.datagrams = datagrams = FrameSlots(2, header_bytes=32, word_bytes=WORD_BYTES)
         m.submodules.sender = sender = FrameSender(
             own.mac,
             own.address,
@@ -199,7 +212,10 @@ class EthernetEdge(wiring.Component):
         wiring.connect(m, replies.reader, sender.replies)
         wiring.connect(m, datagrams.reader, sender.datagrams)
         wiring.connect(m, transmitter.slot, datagrams.writer)
-        wiring.connect(m, wiring.flipped(self.sent), transmitter.datagrams)
+        if own.sent_bytes == WORD_BYTES:
+            wiring.connect(m, wiring.flipped(self.sent), transmitter.datagrams)
+        else:
+            join_words(m, self.sent, transmitter.datagrams)
         for name, flow in replies.writer.signature.members.items():
             if flow.flow == In:
                 parts = [getattr(part.reply, name) for part in (arp, echo)]

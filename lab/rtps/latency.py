@@ -49,7 +49,7 @@ STAGES = {
     "message from the link": "link.received_valid",
     "message from its gate": "core.gate_text_in.packets_out_valid",
     "message to its gate": "core.fifo_text_out.packets_in_valid",
-    "message to the link": "link.rtps.intake.sent_ready",
+    "message to the link": "link.sent_valid",
     "message into the history": "link.rtps.history.writes",
     "datagram of the transmitter": "link.rtps.datagrams_out_valid",
     "frame of the sender": "link.network.sender.frames_valid",

@@ -34,6 +34,13 @@ _GIGABIT_HZ = 125e6
 _APART = "ethernet"
 """The clock domain of an edge whose clock is not that of the node."""
 
+_WORD_BYTES = 4
+"""What a participant sends per cycle."""
+
+_AHEAD_BYTES, _PAUSE_BYTES = 180, 20
+"""Bytes that a participant with the clock of the edge sends from the beginning of a frame until the
+checksum of its datagram is due, and those that it would send while it reads the payload."""
+
 _WORDS = 16
 """Words between two clock domains: enough for a word per cycle."""
 
@@ -90,13 +97,20 @@ class EthernetLink(wiring.Component):
         # A participant stores datagrams by itself, if it has the clock of the edge.
         fragment_bytes, stores = _fragment_bytes(self.description), is_apart or link.kind != "rtps"
         is_split = not stores and fragment_bytes > 0
+        sent_bytes, ahead_bytes = 1, 0
+        if link.kind == "rtps":
+            sent_bytes = _WORD_BYTES
+            rate = self.description.clock_hz / _GIGABIT_HZ if is_apart else 1.0
+            ahead_bytes = max(0, round(_AHEAD_BYTES * min(1.0, rate)) - _PAUSE_BYTES)
         upper: UdpLink | RtpsLink
         ports: tuple[int, ...] = (link.port,)
         groups: tuple[int, ...] = ()
         if link.kind == "rtps":
             ports = tuple(ports_of_link(self.description))
             groups = (int(IPv4Address(MULTICAST_GROUP)),)
-            m.submodules.rtps = upper = RtpsLink(self.description, has_joined=is_split)
+            m.submodules.rtps = upper = RtpsLink(
+                self.description, has_joined=is_split, out_bytes=_WORD_BYTES
+            )
             m.d.comb += [upper.nonce.eq(self.nonce), upper.idle.eq(self.idle)]
         else:
             m.submodules.udp = upper = UdpLink(self.description.bus_bytes, link)
@@ -111,6 +125,8 @@ class EthernetLink(wiring.Component):
                 groups=groups,
                 memory_bytes=(1 << 14 if is_apart else 1 << 12) if stores else 0,
                 fragment_bytes=fragment_bytes,
+                sent_bytes=sent_bytes,
+                ahead_bytes=ahead_bytes,
             )
         )
         wiring.connect(m, phy.pins, wiring.flipped(getattr(self, link.ethernet)))
@@ -142,16 +158,16 @@ class EthernetLink(wiring.Component):
         m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
-        layout = datagram_layout(1)
         # Without registers between, it is too long a way from the edge into a FIFO, or back.
-        before, behind = StreamSlice(layout), StreamSlice(layout)
+        layouts = datagram_layout(1), datagram_layout(network.settings.sent_bytes)
+        before, behind = map(StreamSlice, layouts)
         m.submodules.before = DomainRenamer(_APART)(before)
         m.submodules.behind = DomainRenamer(_APART)(behind)
         wiring.connect(m, network.received, before.i)
         wiring.connect(m, behind.o, network.sent)
-        for name, source, target, domains in (
-            ("to_node", before.o, upper.datagrams_in, (_APART, "sync")),
-            ("to_edge", upper.datagrams_out, behind.i, ("sync", _APART)),
+        for name, source, target, layout, domains in (
+            ("to_node", before.o, upper.datagrams_in, layouts[0], (_APART, "sync")),
+            ("to_edge", upper.datagrams_out, behind.i, layouts[1], ("sync", _APART)),
         ):
             m.submodules[name] = fifo = AsyncFIFO(
                 width=layout.size, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]

@@ -47,7 +47,9 @@ class RtpsLink(wiring.Component):
         The tag of a request is a number that leads back to who asked.
     sent : In(LinkSignature(bus_bytes))
     counters : Out(link_counters_layout())
-    datagrams_in, datagrams_out : In and Out(DatagramSignature(1))
+    datagrams_in : In(DatagramSignature(1))
+    datagrams_out : Out(DatagramSignature(out_bytes))
+        1 byte, as a core of LiteEth has it, or 4.
     joined_in : In(DatagramSignature(1))
         Only with `has_joined`: other datagrams, without `error`, which are read as they come.
     idle : In(number of subscriptions and services)
@@ -57,14 +59,16 @@ class RtpsLink(wiring.Component):
         from the end of the reset on.
     """
 
-    def __init__(self, description: Description, has_joined: bool = False):
+    def __init__(self, description: Description, has_joined: bool = False, out_bytes: int = 1):
         self.description, self.has_joined = description, has_joined
+        self.out_bytes = out_bytes
         bus = description.bus_bytes
         super().__init__(
             {
                 **link_members(bus),
                 "idle": In(idle_bits(description)),
                 **self.medium(),
+                "datagrams_out": Out(DatagramSignature(out_bytes)),
                 **({"joined_in": In(DatagramSignature(1))} if has_joined else {}),
             }
         )
@@ -131,14 +135,12 @@ class RtpsLink(wiring.Component):
             *passes(self.sent, intake.sent),
             transmitter.order.eq(engine.order),
             transmitter.starts.eq(engine.starts),
-            engine.ends.eq(transmitter.ends),
             history.write_at.eq(intake.write_at),
-            history.write_byte.eq(intake.write_byte),
+            history.write_word.eq(intake.write_word),
             history.writes.eq(intake.writes),
             history.read_at.eq(transmitter.read_at),
             history.reads.eq(transmitter.reads),
-            transmitter.byte.eq(history.byte),
-            *passes(transmitter.datagrams, self.datagrams_out),
+            transmitter.word.eq(history.word),
         ]
         assembler = None
         if any(each.bytes for each in pieces):
@@ -147,6 +149,12 @@ class RtpsLink(wiring.Component):
             wiring.connect(m, reader.fragments, assembler.fragments)
         # An edge of the node counts what it drops itself.
         is_judged = Const(0) if link.has_ethernet else ends & ~foreign
+        sent = self.datagrams_out
+        if self.out_bytes == WORD_BYTES:
+            m.d.comb += passes(transmitter.datagrams, sent)
+        else:
+            self._send_bytes(m, transmitter.datagrams)
+        m.d.comb += engine.ends.eq(sent.valid & sent.ready & sent.payload.last)
         passed = self._deliver(m, reader, engine, width, assembler)
         add_counters(
             m,
@@ -199,6 +207,28 @@ class RtpsLink(wiring.Component):
         with m.Elif(ends & chosen):
             m.d.sync += is_full.eq(0)
         return packets, size
+
+    def _send_bytes(self, m: Module, words: Any) -> None:
+        """Divide the words of datagrams into bytes. All else is the same during a datagram."""
+        m.submodules.bytes = width = PacketWidth(WORD_BYTES, 1)
+        out, wide, narrow = self.datagrams_out, width.packets_in, width.packets_out
+        m.d.comb += [
+            out.payload.eq(0),
+            Value.cast(wide.payload.data).eq(words.payload.data),
+            wide.payload.count.eq(WORD_BYTES),
+            wide.payload.last.eq(words.payload.last),
+            wide.valid.eq(words.valid),
+            words.ready.eq(wide.ready),
+            out.payload.data.eq(Value.cast(narrow.payload.data)),
+            out.payload.last.eq(narrow.payload.last),
+            out.payload.last_be.eq(narrow.payload.last),
+            out.valid.eq(narrow.valid),
+            narrow.ready.eq(out.ready),
+            *(
+                out.payload[name].eq(words.payload[name])
+                for name in ("length", "ip_address", "src_port", "dst_port")
+            ),
+        ]
 
     def _deliver(
         self,

@@ -341,12 +341,12 @@ class Engine(wiring.Component):
             fields.count.eq(self._count),
             fields.bits.eq(self._bits),
             fields.bitmap.eq(self._bitmap),
-            fields.flags.eq(_LITTLE | Mux(self._is_final, _FINAL, 0)),
+            fields.flags[8:].eq(_LITTLE | Mux(self._is_final, _FINAL, 0)),
             fields.related.eq(self._identity.guid),
             fields.related_number.eq(self._identity.number),
             padded.eq(Cat(Const(0, 2), (self._sent_bytes + 3)[2:])),
             head.eq(_at([HEAD_BYTES.get(each, 0) for each in Job], self._job)),
-            fields.size.eq(head + padded),
+            fields.size[16:].eq(head + padded),
         ]
         for number, part in enumerate(parts):
             with m.If(user == number):
