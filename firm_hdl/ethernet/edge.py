@@ -57,8 +57,8 @@ class EthernetSettings:
     # A tick has `1 << tick_bits` cycles. It should be 50 to 100 ms: 23 bits at 125 MHz.
     tick_bits: int = 23
 
-    # Bytes of a word of datagrams to send: 1 or 4.
-    sent_bytes: int = 1
+    # Bytes of a word of datagrams, received and sent: 1 or 4.
+    word_bytes: int = 1
     # So many bytes of a datagram may be missing when its frame begins. If it is not 0, datagrams to
     # send must not pause, and be no larger than a frame.
     ahead_bytes: int = 0
@@ -96,13 +96,13 @@ class EthernetEdge(wiring.Component):
     -------
     symbols_in : In(SymbolSignature())
     symbols_out : Out(SymbolSignature())
-    received : Out(DatagramSignature(1))
+    received : Out(DatagramSignature(settings.word_bytes))
         `dst_port` is one of the node's ports, and `error` is 0. May be held; datagrams for which
         there is no room then are dropped. Without memory, it cannot be held, and has `error`.
     joined : Out(DatagramSignature(1))
         Only without memory, but with some for fragments: datagrams that came in fragments. May be
         held.
-    sent : In(DatagramSignature(settings.sent_bytes))
+    sent : In(DatagramSignature(settings.word_bytes))
         `ip_address` is a machine or a group.
     drops : Out(drops_layout())
         Strobes.
@@ -114,9 +114,9 @@ class EthernetEdge(wiring.Component):
             {
                 "symbols_in": In(SymbolSignature()),
                 "symbols_out": Out(SymbolSignature()),
-                "received": Out(DatagramSignature(1)),
+                "received": Out(DatagramSignature(settings.word_bytes)),
                 **({"joined": Out(DatagramSignature(1))} if settings.is_split else {}),
-                "sent": In(DatagramSignature(settings.sent_bytes)),
+                "sent": In(DatagramSignature(settings.word_bytes)),
                 "drops": Out(drops_layout()),
             }
         )
@@ -181,7 +181,7 @@ class EthernetEdge(wiring.Component):
         if isinstance(udp, UdpReceiver):
             stores.append(udp.store)
         else:
-            wiring.connect(m, udp.received, wiring.flipped(self.received))
+            self._receive(m, udp.received)
 
         dropped = Signal()
         if own.fragment_bytes:
@@ -205,14 +205,16 @@ class EthernetEdge(wiring.Component):
             m.submodules.reader = reader = DatagramReader(len(stores))
             for store, read in zip(stores, reader.stores, strict=True):
                 wiring.connect(m, store, read)
-            target = self.joined if own.is_split else self.received
-            wiring.connect(m, reader.datagrams, wiring.flipped(target))
+            if own.is_split:
+                wiring.connect(m, reader.datagrams, wiring.flipped(self.joined))
+            else:
+                self._receive(m, reader.datagrams)
 
         # Requests of ARP and of an echo never come at the same time, nor do their replies.
         wiring.connect(m, replies.reader, sender.replies)
         wiring.connect(m, datagrams.reader, sender.datagrams)
         wiring.connect(m, transmitter.slot, datagrams.writer)
-        if own.sent_bytes == WORD_BYTES:
+        if own.word_bytes == WORD_BYTES:
             wiring.connect(m, wiring.flipped(self.sent), transmitter.datagrams)
         else:
             join_words(m, self.sent, transmitter.datagrams)
@@ -265,6 +267,13 @@ class EthernetEdge(wiring.Component):
             drops["checksum"] |= igmp.wrong
         m.d.comb += [self.drops[name].eq(value) for name, value in drops.items()]
         return m
+
+    def _receive(self, m: Module, datagrams: Any) -> None:
+        """Pass on what was received."""
+        if self.settings.word_bytes == WORD_BYTES:
+            join_words(m, datagrams, self.received)
+        else:
+            wiring.connect(m, datagrams, wiring.flipped(self.received))
 
 
 _OF_CACHE = ("done", "found", "gone", "stale", "mac")

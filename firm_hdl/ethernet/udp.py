@@ -344,7 +344,7 @@ def join_words(m: Module, source: Any, target: Any) -> None:
     number, kept = Signal(range(WORD_BYTES)), Signal(8 * (WORD_BYTES - 1))
     completes = Signal()
     m.d.comb += [
-        *(out[name].eq(came[name]) for name in ("last", "length", *_ABOUT)),
+        *(out[name].eq(came[name]) for name in ("last", "error", "length", *_ABOUT)),
         out.data.eq(kept | came.data << (number << 3)),
         out.last_be.eq(came.last << number),
         completes.eq(came.last | (number == WORD_BYTES - 1)),

@@ -35,7 +35,7 @@ _APART = "ethernet"
 """The clock domain of an edge whose clock is not that of the node."""
 
 _WORD_BYTES = 4
-"""What a participant sends per cycle."""
+"""What a participant takes and sends per cycle."""
 
 _AHEAD_BYTES, _PAUSE_BYTES = 180, 20
 """Bytes that a participant with the clock of the edge sends from the beginning of a frame until the
@@ -94,14 +94,15 @@ class EthernetLink(wiring.Component):
         link = self.description.link
         own = IPv4Interface(link.address)
         is_apart = link.ethernet != "mii" and self.description.clock_hz != _GIGABIT_HZ
-        # A participant stores datagrams by itself, if it has the clock of the edge.
-        fragment_bytes, stores = _fragment_bytes(self.description), is_apart or link.kind != "rtps"
-        is_split = not stores and fragment_bytes > 0
-        sent_bytes, ahead_bytes = 1, 0
+        # A participant stores datagrams by itself, if it takes them as fast as they come.
+        fragment_bytes, stores = _fragment_bytes(self.description), True
+        word_bytes, ahead_bytes = 1, 0
         if link.kind == "rtps":
-            sent_bytes = _WORD_BYTES
+            word_bytes = _WORD_BYTES
             rate = self.description.clock_hz / _GIGABIT_HZ if is_apart else 1.0
+            stores = rate * _WORD_BYTES < 1.02
             ahead_bytes = max(0, round(_AHEAD_BYTES * min(1.0, rate)) - _PAUSE_BYTES)
+        is_split = not stores and fragment_bytes > 0
         upper: UdpLink | RtpsLink
         ports: tuple[int, ...] = (link.port,)
         groups: tuple[int, ...] = ()
@@ -109,7 +110,7 @@ class EthernetLink(wiring.Component):
             ports = tuple(ports_of_link(self.description))
             groups = (int(IPv4Address(MULTICAST_GROUP)),)
             m.submodules.rtps = upper = RtpsLink(
-                self.description, has_joined=is_split, out_bytes=_WORD_BYTES
+                self.description, has_joined=is_split, word_bytes=_WORD_BYTES
             )
             m.d.comb += [upper.nonce.eq(self.nonce), upper.idle.eq(self.idle)]
         else:
@@ -125,7 +126,7 @@ class EthernetLink(wiring.Component):
                 groups=groups,
                 memory_bytes=(1 << 14 if is_apart else 1 << 12) if stores else 0,
                 fragment_bytes=fragment_bytes,
-                sent_bytes=sent_bytes,
+                word_bytes=word_bytes,
                 ahead_bytes=ahead_bytes,
             )
         )
@@ -139,7 +140,7 @@ class EthernetLink(wiring.Component):
             m.submodules.phy, m.submodules.network = phy, network
             wiring.connect(m, network.received, upper.datagrams_in)
             wiring.connect(m, upper.datagrams_out, network.sent)
-            if isinstance(upper, RtpsLink) and is_split:
+            if is_split:
                 wiring.connect(m, network.joined, upper.joined_in)
         m.d.comb += [*passes(upper.received, self.received), *passes(self.sent, upper.sent)]
         for name in upper.counters.shape().members:
@@ -159,18 +160,24 @@ class EthernetLink(wiring.Component):
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
         # Without registers between, it is too long a way from the edge into a FIFO, or back.
-        layouts = datagram_layout(1), datagram_layout(network.settings.sent_bytes)
-        before, behind = map(StreamSlice, layouts)
+        layout = datagram_layout(network.settings.word_bytes)
+        before, behind = StreamSlice(layout), StreamSlice(layout)
         m.submodules.before = DomainRenamer(_APART)(before)
         m.submodules.behind = DomainRenamer(_APART)(behind)
         wiring.connect(m, network.received, before.i)
         wiring.connect(m, behind.o, network.sent)
-        for name, source, target, layout, domains in (
-            ("to_node", before.o, upper.datagrams_in, layouts[0], (_APART, "sync")),
-            ("to_edge", upper.datagrams_out, behind.i, layouts[1], ("sync", _APART)),
-        ):
+        ways = [
+            ("to_node", before.o, upper.datagrams_in, (_APART, "sync")),
+            ("to_edge", upper.datagrams_out, behind.i, ("sync", _APART)),
+        ]
+        if network.settings.is_split:
+            ways.append(("joined_to_node", network.joined, upper.joined_in, (_APART, "sync")))
+        for name, source, target, domains in ways:
             m.submodules[name] = fifo = AsyncFIFO(
-                width=layout.size, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
+                width=len(Value.cast(source.payload)),
+                depth=_WORDS,
+                w_domain=domains[0],
+                r_domain=domains[1],
             )
             m.d.comb += [
                 fifo.w_data.eq(source.payload),

@@ -47,9 +47,8 @@ class RtpsLink(wiring.Component):
         The tag of a request is a number that leads back to who asked.
     sent : In(LinkSignature(bus_bytes))
     counters : Out(link_counters_layout())
-    datagrams_in : In(DatagramSignature(1))
-    datagrams_out : Out(DatagramSignature(out_bytes))
-        1 byte, as a core of LiteEth has it, or 4.
+    datagrams_in, datagrams_out : In and Out(DatagramSignature(word_bytes))
+        A byte, as a core of LiteEth has it, or 4, also of what comes with the right `last_be`.
     joined_in : In(DatagramSignature(1))
         Only with `has_joined`: other datagrams, without `error`, which are read as they come.
     idle : In(number of subscriptions and services)
@@ -59,16 +58,17 @@ class RtpsLink(wiring.Component):
         from the end of the reset on.
     """
 
-    def __init__(self, description: Description, has_joined: bool = False, out_bytes: int = 1):
+    def __init__(self, description: Description, has_joined: bool = False, word_bytes: int = 1):
         self.description, self.has_joined = description, has_joined
-        self.out_bytes = out_bytes
+        self.word_bytes = word_bytes
         bus = description.bus_bytes
         super().__init__(
             {
                 **link_members(bus),
                 "idle": In(idle_bits(description)),
                 **self.medium(),
-                "datagrams_out": Out(DatagramSignature(out_bytes)),
+                "datagrams_in": In(DatagramSignature(word_bytes)),
+                "datagrams_out": Out(DatagramSignature(word_bytes)),
                 **({"joined_in": In(DatagramSignature(1))} if has_joined else {}),
             }
         )
@@ -91,7 +91,6 @@ class RtpsLink(wiring.Component):
         m.submodules.engine = engine = Engine(
             description, templates, own.writers, own.readers, parts, pieces
         )
-        m.submodules.words = words = PacketWidth(1, WORD_BYTES, side_bits=1)
         m.submodules.fifo = fifo = PacketFifo(
             WORD_BYTES, link.memory_bytes, link.packets, when_full="drop"
         )
@@ -106,22 +105,14 @@ class RtpsLink(wiring.Component):
         m.submodules.transmitter = transmitter = Transmitter(
             templates, engine.memory_bytes, ports.discovery
         )
-        came, beat = self.datagrams_in, words.packets_in.payload
+        came = self.datagrams_in
         ends, foreign = Signal(), Signal()
         packets, size = fifo.packets_out, fifo.size
         if self.has_joined:
             packets, size = self._join(m, fifo)
         m.d.comb += [
-            Value.cast(beat.data).eq(came.payload.data),
-            beat.count.eq(1),
-            beat.last.eq(came.payload.last),
-            words.packets_in.valid.eq(came.valid),
-            came.ready.eq(words.packets_in.ready),
             ends.eq(came.valid & came.ready & came.payload.last),
             foreign.eq(~_is_one_of(came.payload.dst_port, ports)),
-            words.side_in.eq(came.payload.error | foreign),
-            *passes(words.packets_out, fifo.packets_in),
-            fifo.abort.eq(words.side_out),
             *passes(packets, reader.packets),
             reader.size.eq(size),
             reader.own.eq(engine.own),
@@ -130,6 +121,7 @@ class RtpsLink(wiring.Component):
             reader.knows.eq(engine.knows),
             reader.wants.eq(engine.wants),
             engine.came.eq(packets.valid),
+            engine.nears.eq(reader.nears),
             engine.nonce.eq(self.nonce),
             engine.idle.eq(self.idle),
             *passes(self.sent, intake.sent),
@@ -149,8 +141,9 @@ class RtpsLink(wiring.Component):
             wiring.connect(m, reader.fragments, assembler.fragments)
         # An edge of the node counts what it drops itself.
         is_judged = Const(0) if link.has_ethernet else ends & ~foreign
+        self._store(m, fifo, came.payload.error | foreign)
         sent = self.datagrams_out
-        if self.out_bytes == WORD_BYTES:
+        if self.word_bytes == WORD_BYTES:
             m.d.comb += passes(transmitter.datagrams, sent)
         else:
             self._send_bytes(m, transmitter.datagrams)
@@ -174,6 +167,30 @@ class RtpsLink(wiring.Component):
             self.counters.large.eq(fifo.counters.large),
         ]
         return m
+
+    def _store(self, m: Module, fifo: PacketFifo, abort: Value) -> None:
+        """Store datagrams as words."""
+        came, packets = self.datagrams_in, fifo.packets_in
+        if self.word_bytes == 1:
+            m.submodules.words = words = PacketWidth(1, WORD_BYTES, side_bits=1)
+            m.d.comb += [
+                *passes(words.packets_out, fifo.packets_in),
+                words.side_in.eq(abort),
+                fifo.abort.eq(words.side_out),
+            ]
+            packets = words.packets_in
+        else:
+            m.d.comb += fifo.abort.eq(abort)
+        m.d.comb += [
+            Value.cast(packets.payload.data).eq(came.payload.data),
+            packets.payload.count.eq(self.word_bytes),
+            packets.payload.last.eq(came.payload.last),
+            packets.valid.eq(came.valid),
+            came.ready.eq(packets.ready),
+        ]
+        for size, ends in enumerate(came.payload.last_be[:-1], 1):
+            with m.If(came.payload.last & ends):
+                m.d.comb += packets.payload.count.eq(size)
 
     def _join(self, m: Module, fifo: PacketFifo) -> tuple[Any, Signal]:
         """Take datagrams of `joined_in`, too, in turn; return packets and their sizes."""

@@ -100,8 +100,8 @@ class Engine(wiring.Component):
     nonce : In(32)
         Not 0: makes the GUID prefix of this start another one than those before. 0: the time at
         which the first datagram comes does so; without any, 4 seconds are waited for one.
-    came : In(1)
-        A datagram is there.
+    came, nears : In(1)
+        A datagram is there; an event comes within some cycles, and not twice without one.
     own : Out(96)
         GUID prefix.
     assembly : Out(LookupSignature(...))
@@ -150,6 +150,7 @@ class Engine(wiring.Component):
                 "idle": In(max(1, len(readers))),
                 "nonce": In(32),
                 "came": In(1),
+                "nears": In(1),
                 "own": Out(96),
                 "assembly": Out(LookupSignature(pieces, self.rows)),
                 "order": Out(order),
@@ -174,6 +175,9 @@ class Engine(wiring.Component):
                 with m.If(self.events.valid & self._turn):
                     m.d.sync += [self._turn.eq(0), self._in_event.eq(1)]
                     m.next = "EVENT"
+                with m.Elif(self.nears & self._turn):
+                    # An event comes within some cycles, and does not wait for something else.
+                    m.next = "IDLE"
                 with m.Elif(self._second_due):
                     m.next = "SECOND"
                 with m.Elif(self._multicast_due | (self._static != 0) | self._due.any()):
@@ -191,7 +195,7 @@ class Engine(wiring.Component):
                 m.d.sync += [self._quiet.eq(0), self._clean.eq(0)]
                 with m.If(self.histories.ends):
                     # Those who wait for it come next.
-                    m.d.sync += self._sweep.eq(self.first_row)
+                    m.d.sync += [self._sweep.eq(self.first_row), self._fresh.eq(1)]
                     m.next = "IDLE"
                 with m.Elif(self.histories.asks):
                     self._begin_scan(m, self.first_row)
@@ -250,6 +254,8 @@ class Engine(wiring.Component):
         # The last row that a sweep comes to, and the last valid one that this sweep has come to.
         self._top = Signal(range(rows), init=self.first_row)
         self._seen = Signal(range(rows), init=self.first_row)
+        # Whether a message has come since the last sweep, which no reader has been sent yet.
+        self._fresh = Signal()
         # Whether a whole sweep sent no sample for the first time: then a new one is taken.
         self._quiet, self._clean = Signal(), Signal()
         # How many of the oldest samples of a writer may give way.
@@ -371,7 +377,7 @@ class Engine(wiring.Component):
         ]
 
     def _kill(self, m: Module, peer: Value) -> None:
-        """Forget a peer. Its place is free after two sweeps, which clear its rows."""
+        """Forget a peer. Its place is free after two whole sweeps, which clear its rows."""
         m.d.sync += [
             self._live.bit_select(peer, 1).eq(0),
             self._matched.bit_select(peer, 1).eq(0),
@@ -735,27 +741,27 @@ class Engine(wiring.Component):
                     m.d.sync += [self._second.eq(1), self._key.eq(event.entity)]
                     m.next = "FIND"
                 with m.Case(EventKind.SAMPLE):
-                    m.next = "DELIVER"
+                    self._deliver(m)
 
-        with m.State("DELIVER"):
-            # The tag of a request leads to its identity, which the reply has to name.
-            if self.serves:
-                named = event.has_related & (event.related != 0)
-                word = self._identities.write_word
-                m.d.comb += [
-                    self._identities.writes.eq(1),
-                    self._identities.write_at.eq(self.tag + 1),
-                    word.tag.eq(self.tag + 1),
-                    word.peer.eq(self._peer),
-                    word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
-                    word.number.eq(number),
-                ]
-            topics = [each.topic.id for each in self.readers if each.topic]
-            m.d.sync += [
-                self.topic.eq(_at(topics, row.local - _FIXED_READERS)),
-                self.tag.eq(self.tag + 1),
+    def _deliver(self, m: Module) -> None:
+        """Tell topic and tag of a sample. The tag of a request leads to what its reply names."""
+        event, row = self.events.payload, self._row
+        if self.serves:
+            named = event.has_related & (event.related != 0)
+            word = self._identities.write_word
+            m.d.comb += [
+                self._identities.writes.eq(1),
+                self._identities.write_at.eq(self.tag + 1),
+                word.tag.eq(self.tag + 1),
+                word.peer.eq(self._peer),
+                word.guid.eq(Mux(named, event.related, Cat(event.source, event.writer))),
+                word.number.eq(event.number),
             ]
-            m.next = "DONE"
+        topics = [each.topic.id for each in self.readers if each.topic]
+        m.d.sync += [
+            self.topic.eq(_at(topics, row.local - _FIXED_READERS)),
+            self.tag.eq(self.tag + 1),
+        ]
 
     # Endpoints of peers (8.5.5.2): which of ours they match, if any.
 
@@ -868,9 +874,11 @@ class Engine(wiring.Component):
         with m.State("ROW_READ"):
             m.d.sync += Value.cast(row).eq(self._rows.word)
             m.next = "ROW_STATE"
-            with m.If(~self._rows.word[0]):
+            # Behind a new message, only those wait whom it is for.
+            is_passed = self._fresh & ~self._rows.word[1]
+            with m.If(~self._rows.word[0] | is_passed):
                 m.next = "NEXT"
-            with m.Elif(self._row_at > self._seen):
+            with m.If(self._rows.word[0] & (self._row_at > self._seen)):
                 m.d.sync += self._seen.eq(self._row_at)
         with m.State("ROW_STATE"):
             counts = [len(self.writers), len(self.readers), 1]
@@ -909,13 +917,14 @@ class Engine(wiring.Component):
                     self._sweep.eq(0),
                     self._top.eq(self._seen),
                     self._seen.eq(self.first_row),
+                    self._fresh.eq(0),
                     self._quiet.eq(self._clean),
                     self._clean.eq(1),
                     self._tick_pass.eq(self._tick_due),
                     self._tick_due.eq(0),
                 ]
                 for each in self._dying:
-                    with m.If(each != 0):
+                    with m.If((each != 0) & ~self._fresh):
                         m.d.sync += each.eq(each - 1)
             m.next = "IDLE"
 

@@ -94,6 +94,8 @@ class MessageReader(wiring.Component):
     fragments : Out(FragmentSignature())
         An :class:`.Assembler`, which takes the bytes of fragments. If it has a whole sample,
         `SAMPLE` comes after `FRAGMENT`, and the payload is that of the assembler.
+    nears : Out(1)
+        Within some cycles, an event comes, or this ends without one.
     malformed : Out(1)
         High for one cycle per datagram whose rest is dropped.
     stray : Out(1)
@@ -115,6 +117,7 @@ class MessageReader(wiring.Component):
                 "payload_bytes": Out(32),
                 "drained": In(1),
                 "fragments": Out(FragmentSignature()),
+                "nears": Out(1),
                 "malformed": Out(1),
                 "stray": Out(1),
             }
@@ -183,7 +186,7 @@ class MessageReader(wiring.Component):
             m.next = state
 
         def take_words() -> None:
-            m.d.comb += [wants.eq(1), step.eq(WORD_BYTES)]
+            m.d.comb += [wants.eq(1), step.eq(WORD_BYTES), self.nears.eq(1)]
 
         def malformed() -> None:
             m.d.comb += self.malformed.eq(1)
@@ -239,6 +242,7 @@ class MessageReader(wiring.Component):
 
             with m.State("LENGTH"):
                 # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
+                m.d.comb += self.nears.eq(1)
                 to_end = (length == 0) & (kind != _PAD) & (kind != InfoTimestamp.KIND)
                 m.d.sync += [
                     left.eq(Mux(to_end, rest, length)),
@@ -252,6 +256,7 @@ class MessageReader(wiring.Component):
                 m.next = "CHECK"
 
             with m.State("CHECK"):
+                m.d.comb += self.nears.eq(1)
                 m.next = "SKIP"
                 with m.Switch(kind):
                     for each, least in _LEAST.items():
@@ -361,6 +366,7 @@ class MessageReader(wiring.Component):
 
             with m.State("DATA"):
                 # 9.4.5.4: a later version may have more fields before the inline QoS.
+                m.d.comb += self.nears.eq(1)
                 least = Mux(is_fragment, _DATA_FRAG_BYTES, _DATA_BYTES)
                 m.d.sync += [skip.eq(Mux(skip < least, 0, skip - least)), event.is_gone.eq(0)]
                 m.next = "BEFORE_INLINE"
@@ -372,6 +378,7 @@ class MessageReader(wiring.Component):
             with m.State("BEFORE_INLINE"):
                 is_wrong = (skip > left) | (~is_fragment & flag_data & flag_key)
                 m.d.comb += [wants.eq((skip != 0) & ~is_wrong), parameters.begins.eq(1)]
+                m.d.comb += self.nears.eq(skip == 0)
                 with m.If(takes):
                     m.d.sync += skip.eq(skip - 1)
                 with m.If(is_wrong):
@@ -383,6 +390,7 @@ class MessageReader(wiring.Component):
 
             with m.State("CONTENT"):
                 gone = ~is_fragment & (flag_key | ~flag_data)
+                m.d.comb += self.nears.eq(1)
                 m.d.sync += [event.is_gone.eq(gone), in_payload.eq(1)]
                 m.d.comb += announcement.begins.eq(1)
                 m.next = "SKIP"
