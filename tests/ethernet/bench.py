@@ -91,7 +91,7 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
     """
     rnd = random.Random(seed)
     edge = EthernetEdge(own or settings())
-    passes_on = not edge.settings.memory_bytes
+    passes_on, width = not edge.settings.memory_bytes, edge.settings.word_bytes
     seen, done = Seen(), []
 
     async def drive(ctx):
@@ -108,10 +108,12 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
                 await ctx.tick().repeat(step)
             elif isinstance(step, Datagram):
                 count = len(step.payload)
-                for place, byte in enumerate(step.payload):
+                for place in range(0, count, width):
                     while rnd.random() < holes:
                         await ctx.tick()
-                    payload = {"data": byte, "last": place == count - 1, "src_port": step.port}
+                    word, last = step.payload[place : place + width], place + width >= count
+                    payload = {"data": int.from_bytes(word, "little"), "src_port": step.port}
+                    payload |= {"last": last, "last_be": last << len(word) - 1}
                     payload |= {"dst_port": step.to_port, "ip_address": number(step.to)}
                     payload["length"] = count if step.length is None else step.length
                     ctx.set(edge.sent.payload, payload)
@@ -172,13 +174,14 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
                 if not part:
                     seen.times.append(("datagram", now[0]))
                     about[number] = fields
-                part.append(payload.data)
+                size = payload.last_be.bit_length() or width
+                part += payload.data.to_bytes(width, "little")[:size]
                 if not payload.last:
                     continue
                 assert passes_on or not payload.error
                 if not payload.error:
                     assert fields == about[number]
-                    assert payload.length == len(part) and payload.last_be
+                    assert payload.length == len(part)
                     seen.datagrams.append((bytes(part), *fields[:3]))
                 part.clear()
             for name in DROPS:

@@ -195,6 +195,20 @@ def test_good_frames_of_all_forms_pass_with_stalls_everywhere():
     assert seen.drops == {"unfit": len(unfit)}
 
 
+def test_a_frame_begins_before_its_datagram_has_ended():
+    own = settings(memory_bytes=0, word_bytes=4, ahead_bytes=160)
+    sizes = (5, 60, 290)
+    steps = [wire(arp(op=2, to=MAC)), wire(udp(61))]
+    for size in sizes:
+        steps += [Datagram(payload(size)), Pause(400)]
+    seen = run(steps, own)
+    assert seen.datagrams == come(61) and not seen.drops
+    assert [carried(packet) for packet in map(understood, seen.frames)] == [*map(payload, sizes)]
+    ends = [cycle for what, cycle in seen.times if what == "datagram sent"]
+    begins = [cycle for what, cycle in seen.times if what == "frame"]
+    assert [b - e for b, e in zip(begins, ends, strict=True)] == [17, 15, -16]
+
+
 def test_addresses_are_asked_for_and_forgotten():
     own = settings(tick_bits=15, gateway=number("192.168.1.1"))
     far = wire(arp(ip="192.168.1.1", mac=OTHER_MAC))
