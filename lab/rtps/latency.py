@@ -76,8 +76,9 @@ class Node:
     """The node in Verilator, and a peer on its network."""
 
     def __init__(self, program: Path, trace: Path) -> None:
-        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        self._process = subprocess.Popen([program, trace], **pipes)
+        self._process = subprocess.Popen(
+            [program, trace], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
         own = ParticipantData(
             prefix=b"\x01\xff" + bytes(9) + b"\1",
             discovery=(Address(HOST, 7410),),
@@ -98,6 +99,8 @@ class Node:
         """Send frames and run; take what the node sends. Return the last cycles of frames."""
         parts = [struct.pack("<III", len(frames), cycles, traced)]
         parts += [struct.pack("<I", len(each)) + each for each in frames]
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
         self._process.stdin.write(b"".join(parts))
         self._process.stdin.flush()
         read, ends = self._process.stdout.read, []
@@ -147,8 +150,11 @@ def arp() -> bytes:
 
 def spans(trace: Path, start: int, end: int) -> dict[str, tuple[int, int]]:
     """Return the first and the last cycle in which each stage has the message."""
-    codes, found, scopes, cycle = {}, {}, [], 0
+    codes: dict[str, str] = {}
+    found: dict[str, tuple[int, int]] = {}
+    scopes: list[str] = []
     high: dict[str, bool] = {}
+    cycle = 0
     with trace.open() as lines:
         for text in lines:
             line = text.strip()

@@ -241,8 +241,8 @@ class MessageReader(wiring.Component):
                         restart("LENGTH")
 
             with m.State("LENGTH"):
-                # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
                 m.d.comb += self.nears.eq(1)
+                # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
                 to_end = (length == 0) & (kind != _PAD) & (kind != InfoTimestamp.KIND)
                 m.d.sync += [
                     left.eq(Mux(to_end, rest, length)),
@@ -365,8 +365,8 @@ class MessageReader(wiring.Component):
                     emit(EventKind.HEARTBEAT)
 
             with m.State("DATA"):
-                # 9.4.5.4: a later version may have more fields before the inline QoS.
                 m.d.comb += self.nears.eq(1)
+                # 9.4.5.4: a later version may have more fields before the inline QoS.
                 least = Mux(is_fragment, _DATA_FRAG_BYTES, _DATA_BYTES)
                 m.d.sync += [skip.eq(Mux(skip < least, 0, skip - least)), event.is_gone.eq(0)]
                 m.next = "BEFORE_INLINE"
