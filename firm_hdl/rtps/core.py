@@ -7,7 +7,7 @@ the endpoint that it is for. :mod:`firm_hdl.rtps.participant` connects it with a
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 from firm_hdl.rtps.backlog import MOST_SAMPLE_BYTES
 from firm_hdl.rtps.budget import Budget
@@ -244,11 +244,22 @@ class Core:
         return address, datagram
 
     def _post(self, outgoing: Outgoing) -> None:
-        """Send to a peer, if it has the credit for what it asked for."""
+        """Send to a peer, if it has the credit for what it asked for.
+
+        Submessages begin with a word (9.4.1). So one that ends within a word is the last one of
+        its datagram, and the others go in another.
+        """
+        some: list[Submessage] = []
+        for each in outgoing.submessages:
+            some.append(each)
+            payload = each.payload if isinstance(each, Data | DataFrag) else None
+            if len(payload or b"") % 4 or each is outgoing.submessages[-1]:
+                self._post_datagram(outgoing, some)
+                some = []
+
+    def _post_datagram(self, outgoing: Outgoing, submessages: Sequence[Submessage]) -> None:
         route = outgoing.route
-        datagram = message.write(
-            self.prefix, (InfoDestination(outgoing.prefix), *outgoing.submessages)
-        )
+        datagram = message.write(self.prefix, (InfoDestination(outgoing.prefix), *submessages))
         ways, are_its_own = route.ways()
         for way in ways:
             # Whatever goes to an address that may be somebody else's costs credit.

@@ -265,7 +265,7 @@ def test_a_board_behind_tcp_and_its_restart():
         made, got, said = exchange(board, TEXTS)
         assert got == TEXTS and not made.side.on_the_way
         accepted[0].shutdown(socket.SHUT_RDWR)
-        assert run_until(made, lambda: len(accepted) == 2 and made.side.is_ready), said
+        assert run_until(made, lambda: len(nodes) == 2 and made.side.is_ready), said
         assert "the other side has closed; trying again" in "".join(said)
         made.graph.say(HEARD, b"again")
         assert run_until(made, lambda: made.graph.got[-1][1] == b"again")
