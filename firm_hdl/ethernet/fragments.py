@@ -126,9 +126,11 @@ class Reassembler(wiring.Component):
                         gives_up.eq(hits & ~follows),
                     ]
             with m.Case(18):
-                other = Mux(slot, parts[0].next, parts[1].next) + 1
+                units, other = self.memory_bytes // 8, Mux(slot, parts[0].next, parts[1].next)
                 other_busy = Mux(slot, busy[0], busy[1])
-                m.d.sync += limit.eq(self.memory_bytes // 8 - Mux(other_busy, other, 0))
+                # One that fills the memory has as many as there are, and none follows.
+                rest = Mux(other < units, units - 1 - other, 0)
+                m.d.sync += limit.eq(Mux(other_busy, rest, units))
                 m.d.sync += [at.eq((header.offset << 3) + _SOURCE_BYTES), fits.eq(1)]
                 m.d.comb += self.load.eq(~first)
             with m.Case(20):

@@ -1,0 +1,289 @@
+"""Claims about the receiver of RTPS: the walk over a datagram, lists of parameters, fragments.
+
+Datagrams have any bytes, and any size.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from amaranth.hdl import Array, Cat, Mux, Signal, Value
+
+from firm_hdl.node.description import Link
+from firm_hdl.node.rtps.assembler import Assembler
+from firm_hdl.node.rtps.events import EventKind
+from firm_hdl.node.rtps.messages import _LEAST, MessageReader
+from firm_hdl.node.rtps.parameters import ParameterReader
+from firm_hdl.rtps.wire.submessages import (
+    AckNack,
+    Data,
+    DataFrag,
+    Gap,
+    Heartbeat,
+    InfoSource,
+    InfoTimestamp,
+    NackFrag,
+)
+from lab.formal.bugs import Bug
+from lab.formal.catalog import Claim, Study
+from lab.formal.scene import Scene
+from lab.formal.streams import fires, progress, rules, sink
+
+__all__ = ["studies"]
+
+WAITS = 13
+"""Cycles without a byte between two bytes, while nothing else waits: the way over the end of one
+datagram to the next one."""
+
+_WAITED = {
+    **dict.fromkeys(("LENGTH", "DATA", "HEARTBEAT", "SET"), 0),
+    "CHECK": 1,
+    "BEFORE_INLINE": 1,
+    "FIELDS": 2,
+    "PARAMETERS": 3,
+    "LISTED": 4,
+    "CONTENT": 5,
+    "ENCAPSULATION": 6,
+    "FRAGMENTS": 7,
+    "EVENT": 8,
+    "DRAIN": 9,
+    "PAYLOAD": 9,
+    "SKIP": 10,
+    "SUBMESSAGE": 11,
+    "START": 12,
+    "HEADER": 13,
+    "DROP": 13,
+}
+"""How many of them can have gone by in a state of the reader."""
+
+_HEADER_BYTES, _PAD = 20, 1
+
+
+class _Walk:
+    """Where a datagram stands, by the lengths in it alone (9.4.5.1).
+
+    Attributes
+    ----------
+    togo : Value
+        Bytes of the datagram that were not taken yet.
+    begun : Signal
+        One of them was.
+    kind, left : Signal
+        The submessage, and bytes that it has yet.
+    head, place : Signal
+        Bytes that were taken of the header, and of that of a submessage.
+    older : Signal
+        The last three bytes.
+    to_end : Value
+        The submessage with the header `older` goes to the end of the datagram.
+    """
+
+    def __init__(self, scene: Scene, block: MessageReader):
+        m, packets, byte = scene.m, block.packets, scene.free(8, "byte")
+        size, begun = Signal(16, name="size", reset_less=True), Signal(name="begun")
+        kept, last, held = Signal(16, name="kept"), Signal(name="last"), Signal(name="held")
+        self.togo, self.begun, takes = Mux(begun, kept, size), begun, fires(packets)
+        m.d.comb += [
+            last.eq(self.togo <= 1),
+            block.size.eq(size),
+            packets.valid.eq(held | scene.free(1, "offers")),
+            Cat(packets.payload.data).eq(byte),
+            packets.payload.count.eq(size != 0),
+            packets.payload.last.eq(last),
+        ]
+        m.d.sync += held.eq(packets.valid & ~packets.ready)
+        self.kind, self.left = Signal(8, name="walk_kind"), Signal(16, name="walk_left")
+        self.head, self.place = Signal(5, name="walk_head"), Signal(2, name="walk_place")
+        self.older, self.length = Signal(24, name="walk_older"), Signal(16, name="walk_length")
+        bounds = self.older[16:], byte
+        m.d.comb += self.length.eq(Mux(self.older[8], Cat(bounds), Cat(reversed(bounds))))
+        with m.If(takes):
+            m.d.sync += [begun.eq(~last), kept.eq(self.togo - 1)]
+            m.d.sync += self.older.eq(Cat(self.older[8:], byte))
+            with m.If(last):
+                m.d.sync += size.eq(scene.free(16, "next_size"))
+            with m.If(~begun):
+                m.d.sync += [self.head.eq(1), self.place.eq(0), self.left.eq(0), self.kind.eq(0)]
+            with m.Elif(self.head != _HEADER_BYTES):
+                m.d.sync += self.head.eq(self.head + 1)
+            with m.Elif(self.left != 0):
+                m.d.sync += self.left.eq(self.left - 1)
+            with m.Else():
+                m.d.sync += self.place.eq(self.place + 1)
+                with m.If(self.place == 3):
+                    kind = self.older[:8]
+                    to_end = (self.length == 0) & (kind != _PAD) & (kind != InfoTimestamp.KIND)
+                    m.d.sync += [
+                        self.kind.eq(kind),
+                        self.left.eq(Mux(to_end, self.togo - 1, self.length)),
+                    ]
+
+
+def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
+    """Return what always holds of the reader's state: with it, each claim follows from a cycle."""
+    reader, parser = inner["MessageReader"], inner["ParameterReader"]
+    state, rest, left, at, kind = reader.state, reader.rest, reader.left, reader.at, reader.kind
+    event = reader.event
+
+    def has(bytes_in_all: Any, left: Value = left, at: Value = at) -> Value:
+        """Of what is being read, `at` bytes were taken; there are enough for the others."""
+        return (at < bytes_in_all) & (left + at >= bytes_in_all)
+
+    # Up to the size of a set.
+    fixed = _LEAST | {AckNack.KIND: 20, NackFrag.KIND: 24}
+    fields = Mux(kind[5:] == 0, Array(fixed.get(number, 0) for number in range(32))[kind[:5]], 0)
+    is_header = state("EVENT") & (event.kind == EventKind.SOURCE) & (kind != InfoSource.KIND)
+    outside = state("START", "HEADER", "SUBMESSAGE", "DROP") | is_header
+    body = ~outside & ~state("LENGTH", "CHECK")
+    is_sample = (event.kind == EventKind.SAMPLE) & ~event.is_gone & ~reader.is_part
+    in_list = parser.state("CHECK", "VALUE") | (parser.place != 0)
+    new = (walk.left == 0) & (walk.place == 0) & (walk.kind == 0) & (kind == 0)
+    is_data, is_fragment = kind == Data.KIND, kind == DataFrag.KIND
+    is_set = (kind == Gap.KIND) | (kind == AckNack.KIND) | (kind == NackFrag.KIND)
+    in_data = state("DATA", "BEFORE_INLINE", "CONTENT", "PARAMETERS", "LISTED")
+    in_announcement = state("PARAMETERS", "LISTED") & reader.in_payload
+    return Cat(
+        reader.older == walk.older,
+        Mux(state("START"), ~walk.begun, Mux(rest == 0, ~walk.begun, rest == walk.togo)),
+        ~state("HEADER") | (has(20, rest) & (walk.begun == (at != 0)) & (kind == 0)),
+        ~state("HEADER") | (at == 0) | ((walk.head == at) & new),
+        state("START", "HEADER", "DROP") | (walk.head == _HEADER_BYTES),
+        state("START", "HEADER", "DROP") | walk.begun | (rest == 0),
+        ~is_header | new,
+        ~state("SUBMESSAGE") | (at == 0) | has(4, rest),
+        ~state("SUBMESSAGE") | ((walk.left == 0) & (walk.place == at)),
+        ~state("LENGTH", "CHECK") | (at == 0),
+        ~state("LENGTH") | (walk.left == Mux(reader.to_end, rest, reader.length)),
+        ~(body | state("CHECK")) | (walk.left == left),
+        ~(body | state("LENGTH", "CHECK")) | ((walk.kind == kind) & (walk.place == 0)),
+        ~body | (left <= rest),
+        ~state("FIELDS") | has(fields),
+        ~state("SET", "ENCAPSULATION") | (at == 0) | has(4),
+        ~state("SET") | (at == 0) | (reader.words != 0),
+        ~state("SET") | is_set,
+        ~state("HEARTBEAT") | (kind == Heartbeat.KIND),
+        ~in_data | is_data | is_fragment,
+        ~state("CHECK", "FIELDS", "DATA", "BEFORE_INLINE") | ~reader.in_payload,
+        ~(state("ENCAPSULATION") | in_announcement) | is_data,
+        ~state("FRAGMENTS") | is_fragment,
+        ~state("PAYLOAD") | (left != 0),
+        ~(state("EVENT") & is_sample) | (left != 0),
+        ~in_list | state("PARAMETERS"),
+        parser.state("HEAD", "VALUE") | (parser.place == 0),
+        ~parser.state("HEAD") | (parser.place == 0) | has(4, left, parser.place),
+        ~parser.state("VALUE") | ((parser.size != 0) & (parser.size <= left)),
+    ).all()
+
+
+def _reader(scene: Scene) -> None:
+    """Read any datagrams, and answer events in any way."""
+    m, block = scene.m, MessageReader(Link(kind="rtps", address="10.0.0.50"))
+    inner = scene.inside(block)
+    walk = _Walk(scene, block)
+    packets, events, payload = block.packets, block.events, block.payload
+    fragments, reader, parser = block.fragments, inner["MessageReader"], inner["ParameterReader"]
+    state = reader.state
+    m.d.comb += [
+        block.own.eq(scene.rigid(96, "own")),
+        block.knows.eq(scene.free(1, "knows")),
+        block.wants.eq(scene.free(1, "wants")),
+        block.drained.eq(scene.free(1, "drained")),
+        fragments.wants.eq(scene.free(1, "fragments_wanted")),
+        fragments.is_whole.eq(scene.free(1, "is_whole")),
+    ]
+    taken, played = sink(scene, events, "events"), sink(scene, payload, "payload")
+    rules(scene, events, "events")
+    takes, in_step = fires(packets), _in_step(inner, walk)
+    scene.claim("whole datagrams", ~takes | (reader.rest == walk.togo))
+    # What an event is about is the submessage that the lengths lead to.
+    kinds = {
+        EventKind.SAMPLE: (Data.KIND, DataFrag.KIND),
+        EventKind.FRAGMENT: (DataFrag.KIND,),
+        EventKind.HEARTBEAT: (Heartbeat.KIND,),
+        EventKind.ACKNACK: (AckNack.KIND,),
+        EventKind.GAP: (Gap.KIND,),
+        EventKind.NACK_FRAG: (NackFrag.KIND,),
+        EventKind.SOURCE: (0, InfoSource.KIND),
+    }
+    for event in EventKind:
+        allowed = Cat(walk.kind == kind for kind in kinds.get(event, (Data.KIND,))).any()
+        is_event = events.valid & (events.payload.kind == event)
+        in_step = in_step & (~is_event | allowed)
+    for name in _INDUCTIVE:
+        scene.claim(name, in_step & state() & parser.state())
+    inside = (walk.left != 0) & (walk.togo >= walk.left)
+    scene.claim("inside", ~(fires(payload) | fragments.takes) | inside)
+    scene.claim("inside", ~fires(payload) | (payload.payload.last == (walk.left == 1)))
+    waits = (events.valid & ~taken) | (payload.valid & ~played) | ~block.drained
+    waited = progress(scene, "input moves", packets.valid & ~packets.ready & ~waits, WAITS)
+    for name, most in _WAITED.items():
+        scene.claim("input moves", ~state(name) | (waited <= most))
+    is_first = state("EVENT") & (events.payload.kind == EventKind.FRAGMENT)
+    scene.claim("input moves", ~is_first | (waited <= 6))
+    scene.claim(
+        "input moves", ~state("DROP") | (reader.rest != 0) | (block.size == 0) | (waited <= 11)
+    )
+    for name, most in (("CHECK", 0), ("VALUE", 1), ("HEAD", 2)):
+        here = state("PARAMETERS") & parser.state(name)
+        scene.claim("input moves", ~here | (waited <= most))
+
+
+def _list(scene: Scene) -> None:
+    """Read any list of parameters, in a submessage of any length."""
+    m, block = scene.m, ParameterReader()
+    parser = scene.inside(block)["ParameterReader"]
+    left, ready = Signal(16, name="left", reset_less=True), scene.free(1, "offers")
+    is_over = block.ended | block.failed
+    begins = is_over & scene.free(1, "begins")
+    m.d.comb += [
+        block.begins.eq(begins),
+        block.byte.eq(scene.free(8, "byte")),
+        block.takes.eq(block.wants & ready),
+        block.is_little.eq(scene.rigid(1, "little")),
+        block.left.eq(left),
+    ]
+    m.d.sync += left.eq(Mux(begins, scene.free(16, "length"), left - block.takes))
+    scene.claim("inside", ~block.wants | (left != 0))
+    scene.claim("inside", ~parser.state("VALUE") | ((parser.size != 0) & (parser.size <= left)))
+    is_begun = parser.state("HEAD") & (parser.place != 0)
+    scene.claim("inside", ~is_begun | (left + parser.place >= 4))
+    scene.claim("inside", parser.state("HEAD", "VALUE") | (parser.place == 0))
+    waited = progress(scene, "input moves", ~block.wants & ~is_over, 2)
+    scene.claim("input moves", parser.state())
+    scene.claim("input moves", (waited == 0) | ~parser.state("CHECK"))
+    scene.claim("input moves", (waited <= 1) | ~parser.state("HEAD", "VALUE"))
+
+
+_READER, _LIST, _ASSEMBLER = MessageReader.elaborate, ParameterReader.elaborate, Assembler.elaborate
+
+
+_INDUCTIVE = ("whole datagrams", "submessages", "inside", "input moves")
+
+
+def _claims(bugs: dict[str, Bug]) -> tuple[Claim, ...]:
+    return tuple(
+        Claim(name, bug, "induction" if name in _INDUCTIVE else "PDR", found_within=80)
+        for name, bug in bugs.items()
+    )
+
+
+def studies() -> list[Study]:
+    """Return the studies of the receiver of RTPS."""
+    reader = {
+        "valid stays": Bug(_READER, "m.If(self.events.ready)", "m.If(1)"),
+        "payload stays": Bug(
+            _READER, "is_known.eq(self.knows)", "[is_known.eq(self.knows), event.last.eq(0)]"
+        ),
+        "whole datagrams": Bug(_READER, "(rest == 0) | takes & packets", "takes & packets"),
+        "submessages": Bug(_READER, "Mux(to_end, rest, length)", "length"),
+        "inside": Bug(_READER, "skip > left", "skip > rest"),
+        "input moves": Bug(_READER, "packets.ready.eq(left != 0)", "packets.ready.eq(left > 1)"),
+    }
+    parameters = {
+        "inside": Bug(_LIST, "size > self.left", "size > self.left + 1"),
+        "input moves": Bug(_LIST, "(place == 0) & (self.left < 4)", "self.left == 0"),
+    }
+    return [
+        Study("rtps-list", "`ParameterReader`", _list, _claims(parameters)),
+        Study("rtps-reader", "`MessageReader`, datagrams of any size", _reader, _claims(reader)),
+    ]
