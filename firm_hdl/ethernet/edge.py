@@ -21,7 +21,14 @@ from firm_hdl.ethernet.mac import MacReceiver, MacTransmitter
 from firm_hdl.ethernet.sender import FrameSender
 from firm_hdl.ethernet.slots import FrameSlots
 from firm_hdl.ethernet.streams import SymbolSignature
-from firm_hdl.ethernet.udp import DatagramReader, UdpReceiver, UdpTransmitter
+from firm_hdl.ethernet.udp import (
+    WORD_BYTES,
+    DatagramReader,
+    UdpForwarder,
+    UdpReceiver,
+    UdpTransmitter,
+    join_words,
+)
 
 __all__ = ["EthernetEdge", "EthernetSettings", "drops_layout"]
 
@@ -41,13 +48,25 @@ class EthernetSettings:
     gateway: int = 0  # 0: nothing leaves the network.
     ports: tuple[int, ...]  # Ports of UDP on which datagrams come.
     groups: tuple[int, ...] = ()  # Groups that the node joins.
-    # For whole datagrams that wait to be read: a power of two, at least 2,048.
+    # For whole datagrams that wait to be read: a power of two, at least 2,048. 0: they are passed
+    # on as they come, before it is known whether they are right.
     memory_bytes: int = 4096
     # For datagrams in fragments, as a `firm_hdl.ethernet.fragments.Reassembler` has it. 0:
     # fragments are dropped.
     fragment_bytes: int = 0
     # A tick has `1 << tick_bits` cycles. It should be 50 to 100 ms: 23 bits at 125 MHz.
     tick_bits: int = 23
+
+    # Bytes of a word of datagrams, received and sent: 1 or 4.
+    word_bytes: int = 1
+    # So many bytes of a datagram may be missing when its frame begins. If it is not 0, datagrams to
+    # send must not pause, and be no larger than a frame.
+    ahead_bytes: int = 0
+
+    @property
+    def is_split(self) -> bool:
+        """Whether datagrams in one piece and those in fragments come apart."""
+        return not self.memory_bytes and bool(self.fragment_bytes)
 
 
 _ARP_TICK_BITS = 4
@@ -63,9 +82,9 @@ class EthernetEdge(wiring.Component):
     What comes is judged as it passes, and cannot be held. State changes only at the end of a frame,
     when all was right: a bad frame leaves no trace but a count.
 
-    From the end of a frame to the first byte of its datagram on `received`: 24 cycles. From the
-    last byte of a datagram on `sent` to the first symbol: about 30 cycles. A byte per cycle in both
-    directions, at 125 MHz those of 1 Gbit/s.
+    From the end of a frame to the first byte of its datagram on `received`: 24 cycles; without
+    memory, to the last one: 5 cycles. From the last byte of a datagram on `sent` to the first
+    symbol: about 30 cycles. A byte per cycle in both directions, at 125 MHz those of 1 Gbit/s.
 
     One clock domain, `sync`. Its reset discards all datagrams inside.
 
@@ -77,10 +96,13 @@ class EthernetEdge(wiring.Component):
     -------
     symbols_in : In(SymbolSignature())
     symbols_out : Out(SymbolSignature())
-    received : Out(DatagramSignature(1))
+    received : Out(DatagramSignature(settings.word_bytes))
         `dst_port` is one of the node's ports, and `error` is 0. May be held; datagrams for which
-        there is no room then are dropped.
-    sent : In(DatagramSignature(1))
+        there is no room then are dropped. Without memory, it cannot be held, and has `error`.
+    joined : Out(DatagramSignature(1))
+        Only without memory, but with some for fragments: datagrams that came in fragments. May be
+        held.
+    sent : In(DatagramSignature(settings.word_bytes))
         `ip_address` is a machine or a group.
     drops : Out(drops_layout())
         Strobes.
@@ -92,8 +114,9 @@ class EthernetEdge(wiring.Component):
             {
                 "symbols_in": In(SymbolSignature()),
                 "symbols_out": Out(SymbolSignature()),
-                "received": Out(DatagramSignature(1)),
-                "sent": In(DatagramSignature(1)),
+                "received": Out(DatagramSignature(settings.word_bytes)),
+                **({"joined": Out(DatagramSignature(1))} if settings.is_split else {}),
+                "sent": In(DatagramSignature(settings.word_bytes)),
                 "drops": Out(drops_layout()),
             }
         )
@@ -109,11 +132,12 @@ class EthernetEdge(wiring.Component):
         m.submodules.ipv4 = ipv4 = Ipv4Receiver(own.address, groups)
         m.submodules.check = check = PayloadCheck(own.ports)
         m.submodules.echo = echo = EchoReceiver()
-        m.submodules.udp_receiver = udp = UdpReceiver(own.memory_bytes)
-        m.submodules.reader = reader = DatagramReader(2 if own.fragment_bytes else 1)
-        m.submodules.udp_transmitter = transmitter = UdpTransmitter(own.address)
+        udp: UdpReceiver | UdpForwarder
+        udp = UdpReceiver(own.memory_bytes) if own.memory_bytes else UdpForwarder()
+        m.submodules.udp_receiver = udp
+        m.submodules.udp_transmitter = transmitter = UdpTransmitter(own.address, own.ahead_bytes)
         m.submodules.replies = replies = FrameSlots(4, header_bytes=16)
-        m.submodules.datagrams = datagrams = FrameSlots(2, header_bytes=32)
+        m.submodules.datagrams = datagrams = FrameSlots(2, header_bytes=32, word_bytes=WORD_BYTES)
         m.submodules.sender = sender = FrameSender(
             own.mac,
             own.address,
@@ -153,8 +177,11 @@ class EthernetEdge(wiring.Component):
             udp.right.eq(check.right),
             udp.check.eq(check.state),
         ]
-        wiring.connect(m, udp.store, reader.stores[0])
-        wiring.connect(m, reader.datagrams, wiring.flipped(self.received))
+        stores: list[Any] = []
+        if isinstance(udp, UdpReceiver):
+            stores.append(udp.store)
+        else:
+            self._receive(m, udp.received)
 
         dropped = Signal()
         if own.fragment_bytes:
@@ -168,18 +195,29 @@ class EthernetEdge(wiring.Component):
                 check.loaded.eq(reassembler.loaded),
                 dropped.eq(reassembler.dropped),
             ]
-            wiring.connect(m, reassembler.store, reader.stores[1])
+            stores.append(reassembler.store)
         else:
             came, about = ipv4.datagrams.bytes, ipv4.datagrams.header
             ends = came.valid & came.payload.end & came.payload.good
             is_fragment = ~about.first | about.more
             m.d.comb += dropped.eq(ends & about.udp & is_fragment)
+        if stores:
+            m.submodules.reader = reader = DatagramReader(len(stores))
+            for store, read in zip(stores, reader.stores, strict=True):
+                wiring.connect(m, store, read)
+            if own.is_split:
+                wiring.connect(m, reader.datagrams, wiring.flipped(self.joined))
+            else:
+                self._receive(m, reader.datagrams)
 
         # Requests of ARP and of an echo never come at the same time, nor do their replies.
         wiring.connect(m, replies.reader, sender.replies)
         wiring.connect(m, datagrams.reader, sender.datagrams)
         wiring.connect(m, transmitter.slot, datagrams.writer)
-        wiring.connect(m, wiring.flipped(self.sent), transmitter.datagrams)
+        if own.word_bytes == WORD_BYTES:
+            wiring.connect(m, wiring.flipped(self.sent), transmitter.datagrams)
+        else:
+            join_words(m, self.sent, transmitter.datagrams)
         for name, flow in replies.writer.signature.members.items():
             if flow.flow == In:
                 parts = [getattr(part.reply, name) for part in (arp, echo)]
@@ -211,7 +249,7 @@ class EthernetEdge(wiring.Component):
             "checksum": echo.wrong | udp.wrong,
             "port": udp.no_port,
             "fragment": dropped,
-            "full": arp.full | echo.full | udp.full,
+            "full": arp.full | echo.full | (udp.full if isinstance(udp, UdpReceiver) else 0),
             "unresolved": sender.unresolved,
             "unfit": transmitter.unfit,
         }
@@ -229,6 +267,13 @@ class EthernetEdge(wiring.Component):
             drops["checksum"] |= igmp.wrong
         m.d.comb += [self.drops[name].eq(value) for name, value in drops.items()]
         return m
+
+    def _receive(self, m: Module, datagrams: Any) -> None:
+        """Pass on what was received."""
+        if self.settings.word_bytes == WORD_BYTES:
+            join_words(m, datagrams, self.received)
+        else:
+            wiring.connect(m, datagrams, wiring.flipped(self.received))
 
 
 _OF_CACHE = ("done", "found", "gone", "stale", "mac")

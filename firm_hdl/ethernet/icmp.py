@@ -71,7 +71,7 @@ class EchoReceiver(wiring.Component):
             reply.kind.eq(Mux(first, ECHO, ECHO_REST)),
             reply.header_byte.eq(byte),
             reply.payload_at.eq(count),
-            reply.payload_byte.eq(byte),
+            reply.payload_word.eq(byte),
         ]
         m.d.sync += [
             continues.eq(

@@ -225,7 +225,7 @@ class FrameSender(wiring.Component):
         # memories are slow; a field's byte of the header, likewise; the byte that it stands for.
         there, from_payload, last = Signal(3), Signal(3), Signal(3)
         looked_up, template_word, from_header = Signal(9), Signal(9), Signal(8)
-        stored = Signal(16)
+        stored = Signal(8)
         this_last, in_template = Signal(), Signal()
         goes = Signal()
         m.d.comb += [
@@ -263,9 +263,9 @@ class FrameSender(wiring.Component):
                 looked_up.eq(word.data),
                 template_word.eq(looked_up),
                 from_header.eq(header_byte),
-                stored.eq(Cat(payload_byte, stored)),
+                stored.eq(payload_byte),
                 out.valid.eq(there[2]),
-                out.payload.data.eq(Mux(from_payload[2], stored[8:], value)),
+                out.payload.data.eq(Mux(from_payload[2], stored, value)),
                 out.payload.last.eq(last[2]),
             ]
             with m.If(there[2] & ~from_payload[2] & is_field & (field == _MAC)):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
-from amaranth.hdl import Array, Cat, Module, Mux, Signal
+from amaranth.hdl import Array, Cat, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
@@ -17,14 +18,20 @@ from firm_hdl.gateware.memories import BlockMemory
 __all__ = [
     "HEADER_BYTES",
     "MOST_PAYLOAD",
+    "WORD_BYTES",
     "DatagramReader",
     "StoreSignature",
+    "UdpForwarder",
     "UdpReceiver",
     "UdpTransmitter",
+    "join_words",
 ]
 
 MOST_PAYLOAD = 1472
 """Largest payload of a datagram that is sent: it is not cut."""
+
+WORD_BYTES = 4
+"""Bytes of a word of datagrams to send."""
 
 HEADER_BYTES = 8
 _SOURCE_BYTES = 4
@@ -158,6 +165,82 @@ class UdpReceiver(wiring.Component):
         return m
 
 
+class UdpForwarder(wiring.Component):
+    """Pass datagrams on as they come, and say with the last byte whether they are right.
+
+    What a :class:`UdpReceiver` would not store has `error`, or nothing comes of it. A byte leaves
+    when the next one has come, the last one 2 cycles after the `end`.
+
+    Members
+    -------
+    datagrams, check, right, no_port, wrong, empty : as those of a :class:`UdpReceiver`
+    received : Out(DatagramSignature(1))
+        Cannot be held.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            {
+                "datagrams": In(Ipv4Signature()),
+                "check": In(check_state_layout()),
+                "right": In(1),
+                "received": Out(DatagramSignature(1)),
+                "no_port": Out(1),
+                "wrong": Out(1),
+                "empty": Out(1),
+            }
+        )
+
+    def elaborate(self, platform: object) -> Module:
+        m = Module()
+        came, header, check = self.datagrams.bytes, self.datagrams.header, self.check
+        out = self.received
+        byte, has_byte = Signal(8), Signal()
+        ports, length = Signal(32), Signal(16)
+        ours, comes, ends, closes, fits, right = (
+            Signal(name=name) for name in ("ours", "comes", "ends", "closes", "fits", "is_right")
+        )
+        m.d.comb += [
+            ours.eq(header.udp & header.first & ~header.more),
+            comes.eq(
+                came.valid
+                & ~came.payload.end
+                & (header.to_node | header.to_group)
+                & ours
+                & (header.place == 20)
+            ),
+            right.eq(ends & self.right & fits),
+        ]
+        m.d.sync += [
+            # All bytes have come a cycle before `ends`.
+            fits.eq(check.length == header.length),
+            length.eq(check.length - HEADER_BYTES),
+            closes.eq(came.valid & came.payload.end),
+            ends.eq(came.valid & came.payload.end & came.payload.good & ours),
+            self.no_port.eq(ends & ~check.port),
+            self.wrong.eq(ends & check.port & ~(self.right & fits)),
+            self.empty.eq(right & check.port & (length == 0)),
+            out.valid.eq(0),
+            out.payload.data.eq(byte),
+            out.payload.last.eq(closes),
+            out.payload.last_be.eq(closes),
+            out.payload.error.eq(~right),
+        ]
+        m.d.comb += [
+            out.payload.length.eq(length),
+            out.payload.ip_address.eq(header.source),
+            out.payload.src_port.eq(ports[16:]),
+            out.payload.dst_port.eq(ports[:16]),
+        ]
+        with m.If(comes & (header.index < 4)):
+            m.d.sync += ports.eq(Cat(came.payload.data, ports))
+        with m.If(closes):
+            m.d.sync += [out.valid.eq(has_byte), has_byte.eq(0)]
+        with m.Elif(comes & (header.index >= HEADER_BYTES) & check.port):
+            m.d.sync += [out.valid.eq(has_byte), byte.eq(came.payload.data), has_byte.eq(1)]
+        return m
+
+
 class DatagramReader(wiring.Component):
     """Read datagrams from stores, in turn.
 
@@ -254,38 +337,63 @@ class DatagramReader(wiring.Component):
         return m
 
 
+_ABOUT = ("ip_address", "src_port", "dst_port")
+
+
+def join_words(m: Module, source: Any, target: Any) -> None:
+    """Join the bytes of datagrams to words; all else is the same during a datagram."""
+    came, out = source.payload, target.payload
+    number, kept = Signal(range(WORD_BYTES)), Signal(8 * (WORD_BYTES - 1))
+    completes = Signal()
+    m.d.comb += [
+        *(out[name].eq(came[name]) for name in ("last", "error", "length", *_ABOUT)),
+        out.data.eq(kept | came.data << (number << 3)),
+        out.last_be.eq(came.last << number),
+        completes.eq(came.last | (number == WORD_BYTES - 1)),
+        target.valid.eq(source.valid & completes),
+        source.ready.eq(target.ready | ~completes),
+    ]
+    with m.If(source.valid & source.ready):
+        m.d.sync += [number.eq(number + 1), kept.eq(out.data)]
+        with m.If(completes):
+            m.d.sync += [number.eq(0), kept.eq(0)]
+
+
 class UdpTransmitter(wiring.Component):
     """Take datagrams to send, and sum them up.
 
-    The header is written and summed beside the payload: in a cycle in which a byte of the payload
-    comes for one half of a word, one of the header fits into the other half. So a payload of 12
-    bytes or more takes a byte per cycle; a shorter one waits before its last byte. The datagram is
-    in its slot 6 cycles after its last byte.
+    A word per cycle; the header is written and summed beside the payload, a byte per cycle. It has
+    12 bytes, so the last word of a short datagram waits. The datagram is in its slot 8 cycles after
+    its last word. Its frame may begin before that, if few bytes are missing.
 
     A datagram is dropped if it has more than 1472 bytes, or another number of bytes than `length`.
+    If its frame has begun before, the frame is not right.
 
     Parameters
     ----------
     address : int
         The node's address.
+    ahead_bytes : int
+        So many bytes may be missing when the frame begins. If there are any, datagrams must not
+        pause.
 
     Members
     -------
-    datagrams : In(DatagramSignature(1))
-        `last_be` and `error` do not count.
-    slot : Out(SlotWriterSignature())
+    datagrams : In(DatagramSignature(WORD_BYTES))
+        `error` does not count.
+    slot : Out(SlotWriterSignature(WORD_BYTES))
         Bytes 6 to 9 of the header are the destination, 10 and 11 the length of IPv4, 16 to 23 the
         header of UDP.
     unfit : Out(1)
         Strobe: a datagram was dropped.
     """
 
-    def __init__(self, address: int):
-        self.address = address
+    def __init__(self, address: int, ahead_bytes: int = 0):
+        self.address, self.ahead_bytes = address, ahead_bytes
         super().__init__(
             {
-                "datagrams": In(DatagramSignature(1)),
-                "slot": Out(SlotWriterSignature()),
+                "datagrams": In(DatagramSignature(WORD_BYTES)),
+                "slot": Out(SlotWriterSignature(WORD_BYTES)),
                 "unfit": Out(1),
             }
         )
@@ -295,45 +403,57 @@ class UdpTransmitter(wiring.Component):
         came, slot = self.datagrams, self.slot
         length, total_length = Signal(16), Signal(16)
         # Bytes of the header in the order in which they are summed, with their places. Halves of
-        # words take turns, the lower one first. The length of IPv4 stands for UDP's length in the
-        # pseudo header; the constant makes up for the difference.
+        # words take turns, the lower one first. What the sender reads first comes first. The length
+        # of IPv4 stands for UDP's length in the pseudo header; the constant makes up for the
+        # difference.
         destination, source_port = came.payload.ip_address, came.payload.src_port
         fields = [
             (6, destination[16:]),
             (8, destination[:16]),
+            (10, total_length),
             (16, source_port),
             (18, came.payload.dst_port),
             (20, length),
-            (10, total_length),
         ]
         halves = [
             (place + 1 - half, field[8 * half :][:8]) for place, field in fields for half in (0, 1)
         ]
         own = (self.address >> 16) + (self.address & 0xFFFF) + UDP + 0xFFFF - 20
-        start = own % 0xFFFF
-        count = Signal(range(MOST_PAYLOAD + 1))
+        # The number of words that came, and of bytes that are missing with this one.
+        count, rest = Signal(range(MOST_PAYLOAD // WORD_BYTES + 1)), Signal(16)
         step = Signal(range(len(halves) + 1))
-        # The sum is a word behind.
-        total, word = Signal(17), Signal(16)
-        header_done, last_half, long, moves = Signal(), Signal(), Signal(), Signal()
-        ended, checksum = Signal(), Signal(16)
-        from_header, following, from_payload = Signal(8), Signal(8), Signal(8)
-        upper, lower = Signal(8), Signal(8)
-        at_upper = Signal()
+        # The sums of the payload, which is a word behind, and of the header.
+        payload, word, has_word = Signal(33), Signal(32), Signal()
+        total, header_word = Signal(17), Signal(16)
+        header_moves, header_done, moves = Signal(), Signal(), Signal()
+        long, ended, begun, commits = Signal(), Signal(), Signal(), Signal()
+        checksum, from_header, following = Signal(16), Signal(8), Signal(8)
         # A register has the byte of the header that comes next.
         with m.Switch(step):
             for number, (place, _) in enumerate(halves):
                 with m.Case(number):
                     m.d.comb += slot.header_at.eq(place)
                     m.d.comb += following.eq(halves[(number + 1) % len(halves)][1])
+        # Behind the last byte, a word counts as 0.
+        ends = [
+            came.payload.last & (came.payload.last_be[:place].any()) for place in range(WORD_BYTES)
+        ]
+        data = [Mux(end, 0, came.payload.data.word_select(n, 8)) for n, end in enumerate(ends)]
         m.d.comb += [
-            slot.payload_at.eq(count),
-            slot.payload_byte.eq(came.payload.data),
+            slot.payload_at.eq(Cat(Const(0, 2), count)),
+            slot.payload_word.eq(came.payload.data),
             slot.payload_write.eq(moves),
             slot.header_byte.eq(from_header),
             slot.kind.eq(DATAGRAM),
         ]
-        m.d.sync += [self.unfit.eq(0), word.eq(0), total.eq(add_word(total, word))]
+        m.d.sync += [
+            self.unfit.eq(0),
+            header_word.eq(0),
+            total.eq(add_word(total, header_word)),
+            has_word.eq(moves),
+        ]
+        with m.If(has_word):
+            m.d.sync += payload.eq((Cat(Const(1, 1), payload[:32]) + Cat(payload[32], word))[1:34])
         with m.If(came.valid):
             m.d.sync += [
                 length.eq(came.payload.length + HEADER_BYTES),
@@ -341,47 +461,52 @@ class UdpTransmitter(wiring.Component):
             ]
         with m.FSM():
             with m.State("IDLE"):
-                m.d.sync += [count.eq(0), step.eq(0), total.eq(start), long.eq(0)]
-                m.d.sync += [from_header.eq(halves[0][1]), header_done.eq(0), last_half.eq(0)]
+                m.d.sync += [count.eq(0), step.eq(0), total.eq(own % 0xFFFF), payload.eq(0)]
+                m.d.sync += [from_header.eq(halves[0][1]), header_done.eq(0), begun.eq(0)]
+                m.d.sync += [long.eq(0), rest.eq(came.payload.length)]
                 with m.If(came.valid & slot.free):
                     m.next = "TAKE"
             with m.State("TAKE"):
-                # The last byte waits until the header, which comes with it, has been read.
+                # The last word waits until the header, which comes with it, has been read.
                 m.d.comb += [
-                    came.ready.eq(~came.payload.last | header_done | (last_half & count[0])),
+                    came.ready.eq(~came.payload.last | header_done),
                     moves.eq(came.valid & came.ready),
-                    from_payload.eq(Mux(moves, came.payload.data, 0)),
+                    header_moves.eq(~header_done & came.valid),
+                    slot.header_write.eq(header_moves),
                 ]
-                # The header's half is the one that the payload does not use.
-                header_moves = ~header_done & came.valid & (~moves | (step[0] == count[0]))
-                m.d.comb += slot.header_write.eq(header_moves)
-                head = Mux(header_moves, from_header, 0)
-                m.d.comb += [
-                    at_upper.eq(~count[0]),
-                    upper.eq(Mux(at_upper & moves, from_payload, Mux(step[0], head, 0))),
-                    lower.eq(Mux(~at_upper & moves, from_payload, Mux(step[0], 0, head))),
-                ]
-                m.d.sync += word.eq(Cat(lower, upper))
                 with m.If(header_moves):
                     m.d.sync += [
+                        header_word.eq(Mux(step[0], Cat(Const(0, 8), from_header), from_header)),
                         step.eq(step + 1),
                         from_header.eq(following),
-                        last_half.eq(step == len(halves) - 2),
                         header_done.eq(step == len(halves) - 1),
                     ]
+                if self.ahead_bytes:
+                    begins = ~begun & ~long & (step >= 6) & (rest <= self.ahead_bytes)
+                    m.d.comb += slot.begins.eq(begins)
+                    m.d.sync += begun.eq(begun | begins)
                 with m.If(moves):
                     m.d.sync += [
+                        word.eq(Cat(reversed(data))),
                         count.eq(count + ~long),
-                        long.eq(long | (count == MOST_PAYLOAD)),
+                        rest.eq(rest - WORD_BYTES),
+                        long.eq(long | (count == MOST_PAYLOAD // WORD_BYTES)),
                     ]
                     with m.If(came.payload.last):
                         m.next = "CARRY"
-                        m.d.sync += ended.eq((count + 1) == came.payload.length)
+                        fits = came.payload.last_be.bit_select((rest + 3)[:2], 1) & (rest <= 4)
+                        m.d.sync += ended.eq(fits & (rest != 0))
             with m.State("CARRY"):
-                m.next = "FOLD"
+                m.next = "LOW"
+            for state, part, following_state in (
+                ("LOW", payload[:16], "HIGH"),
+                ("HIGH", payload[16:32], "TOP"),
+                ("TOP", payload[32], "FOLD"),
+            ):
+                with m.State(state):
+                    m.d.sync += total.eq(add_word(total, Cat(part, Const(0, 16))[:16]))
+                    m.next = following_state
             with m.State("FOLD"):
-                m.next = "SUM"
-            with m.State("SUM"):
                 folded = total[:16] + total[16]
                 m.d.sync += checksum.eq(Mux(folded[:16].all(), 0xFFFF, ~folded[:16]))
                 m.next = "UPPER"
@@ -394,11 +519,12 @@ class UdpTransmitter(wiring.Component):
                 m.next = "LOWER"
             with m.State("LOWER"):
                 m.d.comb += [
+                    commits.eq(ended & ~long),
                     slot.header_write.eq(1),
                     slot.header_at.eq(23),
                     slot.header_byte.eq(checksum[:8]),
-                    slot.commit.eq(ended & ~long),
+                    slot.commit.eq(commits | begun),
                 ]
-                m.d.sync += self.unfit.eq(~ended | long)
+                m.d.sync += self.unfit.eq(~commits)
                 m.next = "IDLE"
         return m

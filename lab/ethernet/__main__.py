@@ -101,6 +101,7 @@ def main() -> int:
     parser.add_argument("what", choices=("fuzz", "tap"))
     parser.add_argument("--frames", type=int, default=200_000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--passes", action="store_true", help="the edge has no memory")
     parser.add_argument("--program", type=Path, help="a harness that was compiled before")
     args = parser.parse_args()
     if args.what == "tap" and os.environ.get("IN_NETWORK") != "1":
@@ -109,7 +110,7 @@ def main() -> int:
             command, env={**os.environ, "IN_NETWORK": "1"}, check=False
         ).returncode
     with tempfile.TemporaryDirectory(prefix="firm-hdl-ethernet-") as folder:
-        program = args.program or compile_board(Path(folder))
+        program = args.program or compile_board(Path(folder), not args.passes)
         problems = tap(program) if args.what == "tap" else []
         if args.what == "fuzz":
             step = 20_000

@@ -91,6 +91,7 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
     """
     rnd = random.Random(seed)
     edge = EthernetEdge(own or settings())
+    passes_on, width = not edge.settings.memory_bytes, edge.settings.word_bytes
     seen, done = Seen(), []
 
     async def drive(ctx):
@@ -107,10 +108,12 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
                 await ctx.tick().repeat(step)
             elif isinstance(step, Datagram):
                 count = len(step.payload)
-                for place, byte in enumerate(step.payload):
+                for place in range(0, count, width):
                     while rnd.random() < holes:
                         await ctx.tick()
-                    payload = {"data": byte, "last": place == count - 1, "src_port": step.port}
+                    word, last = step.payload[place : place + width], place + width >= count
+                    payload = {"data": int.from_bytes(word, "little"), "src_port": step.port}
+                    payload |= {"last": last, "last_be": last << len(word) - 1}
                     payload |= {"dst_port": step.to_port, "ip_address": number(step.to)}
                     payload["length"] = count if step.length is None else step.length
                     ctx.set(edge.sent.payload, payload)
@@ -132,16 +135,21 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
     now = [0]
 
     async def watch(ctx):
-        frame, part, about, since = bytearray(), bytearray(), None, 0
-        out, received = edge.symbols_out, edge.received
+        frame, since = bytearray(), 0
+        out, streams = edge.symbols_out, [edge.received]
+        if edge.settings.is_split:
+            streams.append(edge.joined)
+        parts, about = [bytearray() for _ in streams], {}
         ready, goes = 1, 1
-        values = (out.valid, out.payload, received.valid, received.payload, edge.drops)
+        came = [each for stream in streams for each in (stream.valid, stream.payload)]
+        values = (out.valid, out.payload, edge.drops, *came)
         while True:
-            ctx.set(received.ready, ready)
+            for stream in streams:
+                ctx.set(stream.ready, ready)
             ctx.set(out.ready, goes)
             _, _, *sampled = await ctx.tick().sample(*values)
             now[0] += 1
-            out_valid, symbol, valid, payload, drops = sampled
+            out_valid, symbol, drops, *sampled = sampled
             if out_valid and goes:
                 if symbol.enable:
                     if not frame:
@@ -158,17 +166,24 @@ def run(steps, own=None, *, holes=0.0, stalls=0.0, slow=0.0, gap=12, after=300, 
                 assert whole[:8] == PREAMBLE and checked(whole[8:-4]) == whole[8:]
                 assert 64 <= len(whole) - 8 <= 1518
                 seen.frames.append(whole[8:-4])
-            if valid and ready:
+            for number, part in enumerate(parts):
+                valid, payload = sampled[2 * number : 2 * number + 2]
+                if not valid or not (ready or passes_on):
+                    continue
                 fields = (payload.ip_address, payload.src_port, payload.dst_port, payload.length)
                 if not part:
                     seen.times.append(("datagram", now[0]))
-                    about = fields
-                assert fields == about and not payload.error
-                part.append(payload.data)
-                if payload.last:
-                    assert payload.length == len(part) and payload.last_be
-                    seen.datagrams.append((bytes(part), *about[:3]))
-                    part = bytearray()
+                    about[number] = fields
+                size = payload.last_be.bit_length() or width
+                part += payload.data.to_bytes(width, "little")[:size]
+                if not payload.last:
+                    continue
+                assert passes_on or not payload.error
+                if not payload.error:
+                    assert fields == about[number]
+                    assert payload.length == len(part)
+                    seen.datagrams.append((bytes(part), *fields[:3]))
+                part.clear()
             for name in DROPS:
                 seen.drops[name] += drops[name]
                 if drops[name]:

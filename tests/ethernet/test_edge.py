@@ -157,7 +157,8 @@ BAD = [
 ]
 
 
-def test_bad_frames_leave_no_trace_but_a_count():
+@pytest.mark.parametrize("memory_bytes", by_depth([0], [0, 4096]))
+def test_bad_frames_leave_no_trace_but_a_count(memory_bytes):
     """After each of them comes a good one, as soon as Ethernet allows."""
     # Half of them are enough: `python -m lab.ethernet fuzz` tries hundreds of thousands.
     bad = by_depth(BAD[::2], BAD)
@@ -165,7 +166,7 @@ def test_bad_frames_leave_no_trace_but_a_count():
     for count, (_, frame) in enumerate(bad):
         steps += [frame, wire(udp(count + 1))]
         want += come(count + 1)
-    seen = run(steps, gap=12)
+    seen = run(steps, settings(memory_bytes=memory_bytes), gap=12)
     assert seen.datagrams == want
     assert seen.frames == []
     for name in seen.drops:
@@ -192,6 +193,20 @@ def test_good_frames_of_all_forms_pass_with_stalls_everywhere():
     sent = [carried(packet) for packet in map(understood, seen.frames)]
     assert sent[:5] == [payload(n) for n in (1, 2, 3, 12, 40)] and sent[6:] == [b"after"]
     assert seen.drops == {"unfit": len(unfit)}
+
+
+def test_a_frame_begins_before_its_datagram_has_ended():
+    own = settings(memory_bytes=0, word_bytes=4, ahead_bytes=160)
+    sizes = (5, 60, 290)
+    steps = [wire(arp(op=2, to=MAC)), wire(udp(61))]
+    for size in sizes:
+        steps += [Datagram(payload(size)), Pause(400)]
+    seen = run(steps, own)
+    assert seen.datagrams == come(61) and not seen.drops
+    assert [carried(packet) for packet in map(understood, seen.frames)] == [*map(payload, sizes)]
+    ends = [cycle for what, cycle in seen.times if what == "datagram sent"]
+    begins = [cycle for what, cycle in seen.times if what == "frame"]
+    assert [b - e for b, e in zip(begins, ends, strict=True)] == [17, 15, -16]
 
 
 def test_addresses_are_asked_for_and_forgotten():
@@ -232,7 +247,7 @@ def fragments(size, ident, cut=24, src=HOST):
 
 
 def test_fragments_in_order_become_datagrams_and_others_are_dropped():
-    own = settings(fragment_bytes=4096, tick_bits=8)
+    own = settings(memory_bytes=0, fragment_bytes=4096, tick_bits=8)
     a, b, c = fragments(60, 1), fragments(30, 1, src=OTHER), fragments(41, 2)
     wrong, lost, late = fragments(20, 3), fragments(60, 4), fragments(33, 5)
     damaged = fragments(90, 6)[0]

@@ -34,6 +34,13 @@ _GIGABIT_HZ = 125e6
 _APART = "ethernet"
 """The clock domain of an edge whose clock is not that of the node."""
 
+_WORD_BYTES = 4
+"""What a participant takes and sends per cycle."""
+
+_AHEAD_BYTES, _PAUSE_BYTES = 180, 20
+"""Bytes that a participant with the clock of the edge sends from the beginning of a frame until the
+checksum of its datagram is due, and those that it would send while it reads the payload."""
+
 _WORDS = 16
 """Words between two clock domains: enough for a word per cycle."""
 
@@ -86,17 +93,28 @@ class EthernetLink(wiring.Component):
         m = Module()
         link = self.description.link
         own = IPv4Interface(link.address)
+        is_apart = link.ethernet != "mii" and self.description.clock_hz != _GIGABIT_HZ
+        # A participant stores datagrams by itself, if it takes them as fast as they come.
+        fragment_bytes, stores = _fragment_bytes(self.description), True
+        word_bytes, ahead_bytes = 1, 0
+        if link.kind == "rtps":
+            word_bytes = _WORD_BYTES
+            rate = self.description.clock_hz / _GIGABIT_HZ if is_apart else 1.0
+            stores = rate * _WORD_BYTES < 1.02
+            ahead_bytes = max(0, round(_AHEAD_BYTES * min(1.0, rate)) - _PAUSE_BYTES)
+        is_split = not stores and fragment_bytes > 0
         upper: UdpLink | RtpsLink
         ports: tuple[int, ...] = (link.port,)
         groups: tuple[int, ...] = ()
         if link.kind == "rtps":
             ports = tuple(ports_of_link(self.description))
             groups = (int(IPv4Address(MULTICAST_GROUP)),)
-            m.submodules.rtps = upper = RtpsLink(self.description)
+            m.submodules.rtps = upper = RtpsLink(
+                self.description, has_joined=is_split, word_bytes=_WORD_BYTES
+            )
             m.d.comb += [upper.nonce.eq(self.nonce), upper.idle.eq(self.idle)]
         else:
             m.submodules.udp = upper = UdpLink(self.description.bus_bytes, link)
-        is_apart = link.ethernet != "mii" and self.description.clock_hz != _GIGABIT_HZ
         phy = PHYS[link.ethernet]()
         network = EthernetEdge(
             EthernetSettings(
@@ -106,8 +124,10 @@ class EthernetLink(wiring.Component):
                 gateway=int(IPv4Address(link.gateway)) if link.gateway else 0,
                 ports=ports,
                 groups=groups,
-                memory_bytes=1 << 14 if is_apart else 1 << 12,
-                fragment_bytes=_fragment_bytes(self.description),
+                memory_bytes=(1 << 14 if is_apart else 1 << 12) if stores else 0,
+                fragment_bytes=fragment_bytes,
+                word_bytes=word_bytes,
+                ahead_bytes=ahead_bytes,
             )
         )
         wiring.connect(m, phy.pins, wiring.flipped(getattr(self, link.ethernet)))
@@ -120,6 +140,8 @@ class EthernetLink(wiring.Component):
             m.submodules.phy, m.submodules.network = phy, network
             wiring.connect(m, network.received, upper.datagrams_in)
             wiring.connect(m, upper.datagrams_out, network.sent)
+            if is_split:
+                wiring.connect(m, network.joined, upper.joined_in)
         m.d.comb += [*passes(upper.received, self.received), *passes(self.sent, upper.sent)]
         for name in upper.counters.shape().members:
             m.d.comb += self.counters[name].eq(upper.counters[name])
@@ -137,19 +159,25 @@ class EthernetLink(wiring.Component):
         m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
-        layout = datagram_layout(1)
         # Without registers between, it is too long a way from the edge into a FIFO, or back.
+        layout = datagram_layout(network.settings.word_bytes)
         before, behind = StreamSlice(layout), StreamSlice(layout)
         m.submodules.before = DomainRenamer(_APART)(before)
         m.submodules.behind = DomainRenamer(_APART)(behind)
         wiring.connect(m, network.received, before.i)
         wiring.connect(m, behind.o, network.sent)
-        for name, source, target, domains in (
+        ways = [
             ("to_node", before.o, upper.datagrams_in, (_APART, "sync")),
             ("to_edge", upper.datagrams_out, behind.i, ("sync", _APART)),
-        ):
+        ]
+        if network.settings.is_split:
+            ways.append(("joined_to_node", network.joined, upper.joined_in, (_APART, "sync")))
+        for name, source, target, domains in ways:
             m.submodules[name] = fifo = AsyncFIFO(
-                width=layout.size, depth=_WORDS, w_domain=domains[0], r_domain=domains[1]
+                width=len(Value.cast(source.payload)),
+                depth=_WORDS,
+                w_domain=domains[0],
+                r_domain=domains[1],
             )
             m.d.comb += [
                 fifo.w_data.eq(source.payload),

@@ -46,8 +46,8 @@ class Part:
 
 
 def bytes_of(parts: tuple[Part, ...]) -> int:
-    """Return the size of the memory that some parts are of; at least 2."""
-    return max([2, *(each.base + each.bytes for each in parts)])
+    """Return the size of the memory that some parts are of; at least 8."""
+    return max([8, *(each.base + each.bytes for each in parts)])
 
 
 def parts_of(writers: tuple[Endpoint, ...]) -> tuple[Part, ...]:
@@ -87,7 +87,7 @@ def _placed(sizes: list[int]) -> tuple[Part, ...]:
 
 
 class History(wiring.Component):
-    """A memory of bytes with one write port and one read port; a byte is read a cycle later.
+    """A memory of words with one write port and one read port; a word is read a cycle later.
 
     Parameters
     ----------
@@ -96,34 +96,35 @@ class History(wiring.Component):
 
     Members
     -------
-    write_at, write_byte, writes : In
+    write_at, write_word, writes : In
     read_at, reads : In
-    byte : Out(8)
+        Addresses are those of bytes, of which the lowest two bits do not count.
+    word : Out(32)
     """
 
     def __init__(self, size: int):
-        self.bytes = max(2, size)
+        self.bytes = max(8, size)
         address = ceil_log2(self.bytes)
         super().__init__(
             {
                 "write_at": In(address),
-                "write_byte": In(8),
+                "write_word": In(32),
                 "writes": In(1),
                 "read_at": In(address),
                 "reads": In(1),
-                "byte": Out(8),
+                "word": Out(32),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        memory = BlockMemory(m, 8, 1 << ceil_log2(self.bytes))
+        memory = BlockMemory(m, 32, 1 << len(self.write_at[2:]))
         m.d.comb += [
-            memory.write_at.eq(self.write_at),
-            memory.write_word.eq(self.write_byte),
+            memory.write_at.eq(self.write_at[2:]),
+            memory.write_word.eq(self.write_word),
             memory.writes.eq(self.writes),
-            memory.read_at.eq(self.read_at),
+            memory.read_at.eq(self.read_at[2:]),
             memory.reads.eq(self.reads),
-            self.byte.eq(memory.word),
+            self.word.eq(memory.word),
         ]
         return m

@@ -23,7 +23,7 @@ def writer_layout(address_bits: int) -> data.StructLayout:
     last, gone : unsigned(32)
         The newest number, and the newest of those that the history no longer has.
     at, used : unsigned(address_bits), unsigned(address_bits + 1)
-        Place of the next byte in the writer's memory, and bytes in use.
+        Place of the next message in the writer's memory, and bytes in use; multiples of 4.
     free : range(MOST_SAMPLES + 1)
         How many of the oldest samples no reader has to acknowledge any more.
     """
@@ -112,7 +112,7 @@ class Intake(wiring.Component):
     sent : In(LinkSignature(bus_bytes))
     unsent : Out(1)
         High for one cycle: a message is dropped, because it is too large, or of no writer.
-    write_at, write_byte, writes : as of a `History`
+    write_at, write_word, writes : as of a `History`
     """
 
     def __init__(
@@ -126,7 +126,7 @@ class Intake(wiring.Component):
                 "sent": In(LinkSignature(bus_bytes)),
                 "unsent": Out(1),
                 "write_at": Out(ceil_log2(bytes_of(parts))),
-                "write_byte": Out(8),
+                "write_word": Out(32),
                 "writes": Out(1),
             }
         )
@@ -135,7 +135,7 @@ class Intake(wiring.Component):
         m = Module()
         sent, asked = self.sent, self.histories
         count, address = max(2, len(self.parts)), len(self.write_at)
-        m.submodules.width = width = PacketWidth(self.bus_bytes, 1)
+        m.submodules.width = width = PacketWidth(self.bus_bytes, 4)
         m.submodules.samples = inner = Module()
         samples = BlockMemory(inner, asked.sample.shape(), MOST_SAMPLES << ceil_log2(count))
         states = LutMemory(m, "states", asked.state.shape(), count)
@@ -153,6 +153,9 @@ class Intake(wiring.Component):
         def place_of(writer: Value, number: Value) -> Value:
             return Cat(number[: ceil_log2(MOST_SAMPLES)], writer)
 
+        def in_memory(size: Value) -> Value:
+            return Cat(Const(0, 2), (size + 3)[2:])
+
         m.d.comb += [
             asked.waits.eq(sent.valid),
             asked.state.eq(read.data),
@@ -162,7 +165,13 @@ class Intake(wiring.Component):
             Value.cast(asked.sample).eq(samples.word),
             width.packets_in.payload.eq(sent.payload.beat),
             self.write_at.eq(base | (place & mask)),
-            self.write_byte.eq(narrow.payload.data[0]),
+            # Behind its end, a message is padded with zeros (9.4.1).
+            self.write_word.eq(
+                Cat(
+                    Mux(narrow.payload.count > place, narrow.payload.data[place], 0)
+                    for place in range(4)
+                )
+            ),
             number.eq(state.last + 1),
             samples.write_at.eq(place_of(writer, number)),
             samples.write_word.at.eq(state.at),
@@ -172,7 +181,7 @@ class Intake(wiring.Component):
             written.data.last.eq(number),
             written.data.gone.eq(state.gone),
             written.data.at.eq(place & mask),
-            written.data.used.eq(state.used + length),
+            written.data.used.eq(state.used + in_memory(length)),
             # A late reader may need some that others have acknowledged.
             written.data.free.eq(Mux(replays, 0, state.free)),
             asked.asker.eq(writer),
@@ -217,7 +226,7 @@ class Intake(wiring.Component):
                     samples.reads.eq(1),
                 ]
                 m.next = "COPY"
-                with m.If((kept == MOST_SAMPLES) | (state.used + length > limit)):
+                with m.If((kept == MOST_SAMPLES) | (state.used + in_memory(length) > limit)):
                     m.next = "FORGET"
                     with m.If((state.free == 0) & (kept < depth)):
                         m.next = "ASK"
@@ -231,7 +240,7 @@ class Intake(wiring.Component):
             with m.State("FORGET"):
                 m.d.sync += [
                     state.gone.eq(asked.oldest),
-                    state.used.eq(state.used - asked.sample.bytes),
+                    state.used.eq(state.used - in_memory(asked.sample.bytes)),
                     state.free.eq(Mux(state.free == 0, 0, state.free - 1)),
                 ]
                 m.next = "ROOM"
@@ -245,7 +254,7 @@ class Intake(wiring.Component):
                 with m.If(sent.valid & sent.ready & sent.payload.beat.last):
                     m.d.sync += fed.eq(1)
                 with m.If(narrow.valid):
-                    m.d.sync += place.eq(place + 1)
+                    m.d.sync += place.eq(place + 4)
                     with m.If(narrow.payload.last):
                         m.next = "COPIED"
             with m.State("COPIED"):

@@ -1,10 +1,10 @@
-"""From datagrams to events: the receiver of RTPS messages (8.3.4), a byte per cycle."""
+"""From datagrams to events: the receiver of RTPS messages (8.3.4), a word per cycle."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.hdl import Cat, Module, Mux, Signal, Value
 from amaranth.lib import stream, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -28,7 +28,10 @@ from firm_hdl.rtps.wire.submessages import (
     NackFrag,
 )
 
-__all__ = ["MessageReader"]
+__all__ = ["WORD_BYTES", "MessageReader"]
+
+WORD_BYTES = 4
+"""Bytes of a datagram that are read in a cycle: all that is not a name is in words (9.4.1)."""
 
 _HEADER_BYTES = 20
 _PAD = 0x01
@@ -59,8 +62,9 @@ class MessageReader(wiring.Component):
     the rest of its datagram invalid; what comes before counts (8.3.4.1). Sequence numbers above
     ``2**32 - 1`` are not valid here.
 
-    A byte is taken per cycle; some cycles more go by for each submessage and each parameter, and
-    those in which an event waits.
+    A word of 4 bytes is taken per cycle, and a byte of parameters and of fragments; some cycles
+    more go by for each submessage and each parameter, and those in which an event waits.
+    Submessages and payloads begin with a word (9.4.1); others are not valid.
 
     Parameters
     ----------
@@ -69,7 +73,7 @@ class MessageReader(wiring.Component):
 
     Members
     -------
-    packets : In(PacketSignature(1))
+    packets : In(PacketSignature(WORD_BYTES))
         Datagrams, which have to come whole.
     size : In(16)
         Bytes of the datagram on `packets`.
@@ -81,7 +85,7 @@ class MessageReader(wiring.Component):
     knows, wants : In(1)
         The answer to an event, in the cycle of its transfer: the sender of `SOURCE` is known; the
         payload of `SAMPLE` is wanted.
-    payload : Out(PacketSignature(1))
+    payload : Out(PacketSignature(WORD_BYTES))
         Payloads that are wanted.
     payload_bytes : Out(32)
         Bytes of the payload, in all its beats.
@@ -90,6 +94,8 @@ class MessageReader(wiring.Component):
     fragments : Out(FragmentSignature())
         An :class:`.Assembler`, which takes the bytes of fragments. If it has a whole sample,
         `SAMPLE` comes after `FRAGMENT`, and the payload is that of the assembler.
+    nears : Out(1)
+        Within some cycles, an event comes, or this ends without one.
     malformed : Out(1)
         High for one cycle per datagram whose rest is dropped.
     stray : Out(1)
@@ -100,17 +106,18 @@ class MessageReader(wiring.Component):
         self.link = link
         super().__init__(
             {
-                "packets": In(PacketSignature(1)),
+                "packets": In(PacketSignature(WORD_BYTES)),
                 "size": In(16),
                 "own": In(96),
                 "events": Out(stream.Signature(event_layout())),
                 "announced": Out(announced_layout()),
                 "knows": In(1),
                 "wants": In(1),
-                "payload": Out(PacketSignature(1)),
+                "payload": Out(PacketSignature(WORD_BYTES)),
                 "payload_bytes": Out(32),
                 "drained": In(1),
                 "fragments": Out(FragmentSignature()),
+                "nears": Out(1),
                 "malformed": Out(1),
                 "stray": Out(1),
             }
@@ -119,12 +126,14 @@ class MessageReader(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         packets, event, fragments = self.packets, self.events.payload, self.fragments
-        byte = packets.payload.data[0]
-        # The last four bytes, the first of them lowest; and as a number in the sender's order.
-        older, word, value = Signal(24), Signal(32), Signal(32)
-        # Bytes that were taken in this state; those that the datagram and the submessage have yet.
-        at, rest, left = Signal(6), Signal(16), Signal(16)
-        takes, aligned, index = Signal(), Signal(), at[2:]
+        # The word, its first byte lowest; and as a number in the sender's order.
+        word, value = Value.cast(packets.payload.data), Signal(32)
+        # The byte of the word that is next, and how many are taken; or all are dropped.
+        place, byte, step = Signal(2), Signal(8), Signal(3, init=1)
+        wants, flushes, is_first = Signal(), Signal(), Signal()
+        # Words that were taken in this state; bytes that the datagram and the submessage have yet.
+        index, rest, left = Signal(4), Signal(16), Signal(16)
+        takes, behind = Signal(), Signal(4)
         kind, flags, length = Signal(8), Signal(8), Signal(16)
         flag_inline, flag_data, flag_key = flags[1], flags[2], flags[3]
         is_little = Signal()
@@ -132,23 +141,29 @@ class MessageReader(wiring.Component):
         is_fragment, is_part = Signal(), Signal()
         skip, words = Signal(16), Signal(4)
         m.d.comb += [
-            takes.eq(packets.valid & packets.ready),
-            aligned.eq(takes & (at[:2] == 3)),
-            word.eq(Cat(older, byte)),
+            takes.eq(packets.valid & wants),
+            is_first.eq(place == 0),
+            behind.eq(place + step),
+            packets.ready.eq(
+                flushes | (wants & (behind == Mux(packets.payload.last, packets.payload.count, 4)))
+            ),
+            byte.eq(word.word_select(place, 8)),
             value.eq(Mux(is_little, word, swapped(word))),
-            Cat(self.payload.payload.data).eq(byte),
-            self.payload.payload.count.eq(1),
-            self.payload.payload.last.eq(left == 1),
+            Value.cast(self.payload.payload.data).eq(word),
+            self.payload.payload.count.eq(step),
+            self.payload.payload.last.eq(left <= WORD_BYTES),
             is_fragment.eq(kind == DataFrag.KIND),
             fragments.byte.eq(byte),
         ]
         with m.If(takes):
             m.d.sync += [
-                older.eq(word[8:]),
-                at.eq(at + 1),
-                rest.eq(rest - 1),
-                left.eq(left - 1),
+                place.eq(behind),
+                index.eq(index + 1),
+                rest.eq(rest - step),
+                left.eq(left - step),
             ]
+        with m.If(packets.valid & packets.ready):
+            m.d.sync += place.eq(0)
         m.submodules.parameters = parameters = ParameterReader()
         m.submodules.announcement = announcement = AnnouncementReader(self.link)
         m.d.comb += [
@@ -167,8 +182,11 @@ class MessageReader(wiring.Component):
         ]
 
         def restart(state: str) -> None:
-            m.d.sync += at.eq(0)
+            m.d.sync += index.eq(0)
             m.next = state
+
+        def take_words() -> None:
+            m.d.comb += [wants.eq(1), step.eq(WORD_BYTES), self.nears.eq(1)]
 
         def malformed() -> None:
             m.d.comb += self.malformed.eq(1)
@@ -193,8 +211,8 @@ class MessageReader(wiring.Component):
                         malformed()
 
             with m.State("HEADER"):
-                m.d.comb += packets.ready.eq(1)
-                with m.If(aligned), m.Switch(index):
+                take_words()
+                with m.If(takes), m.Switch(index):
                     with m.Case(0), m.If(word != int.from_bytes(b"RTPS", "little")):
                         malformed()
                     with m.Case(1):
@@ -210,11 +228,11 @@ class MessageReader(wiring.Component):
             with m.State("SUBMESSAGE"):
                 with m.If(rest == 0):
                     m.next = "START"
-                with m.Elif((rest < 4) & (at == 0)):
+                with m.Elif((rest < WORD_BYTES) | ~is_first):
                     malformed()
                 with m.Else():
-                    m.d.comb += packets.ready.eq(1)
-                    with m.If(aligned):
+                    take_words()
+                    with m.If(takes):
                         m.d.sync += [
                             kind.eq(word[:8]),
                             flags.eq(word[8:16]),
@@ -223,6 +241,7 @@ class MessageReader(wiring.Component):
                         restart("LENGTH")
 
             with m.State("LENGTH"):
+                m.d.comb += self.nears.eq(1)
                 # 9.4.5.1.3: 0 means "to the end", except where a submessage may be empty.
                 to_end = (length == 0) & (kind != _PAD) & (kind != InfoTimestamp.KIND)
                 m.d.sync += [
@@ -237,6 +256,7 @@ class MessageReader(wiring.Component):
                 m.next = "CHECK"
 
             with m.State("CHECK"):
+                m.d.comb += self.nears.eq(1)
                 m.next = "SKIP"
                 with m.Switch(kind):
                     for each, least in _LEAST.items():
@@ -249,8 +269,8 @@ class MessageReader(wiring.Component):
                     malformed()
 
             with m.State("FIELDS"):
-                m.d.comb += packets.ready.eq(1)
-                with m.If(aligned):
+                take_words()
+                with m.If(takes):
                     with m.Switch(kind):
                         with m.Case(InfoDestination.KIND), m.Switch(index):
                             with m.Case(0):
@@ -320,11 +340,11 @@ class MessageReader(wiring.Component):
                 # The first word of a set (9.4.2.6), if it has one. All but GAP have a count behind
                 # it.
                 needed = Cat(0, 0, words) + Mux(kind == Gap.KIND, 0, 4)
-                is_short = (at == 0) & (left < needed)
-                m.d.comb += packets.ready.eq((words != 0) & ~is_short)
+                is_short = left < needed
+                m.d.comb += [wants.eq((words != 0) & ~is_short), step.eq(WORD_BYTES)]
                 with m.If(is_short):
                     malformed()
-                with m.Elif(aligned | (words == 0)):
+                with m.Elif(takes | (words == 0)):
                     m.d.sync += event.bits.eq(Mux(words == 0, 0, value))
                     m.next = "SKIP"
                     with m.If(is_known), m.Switch(kind):
@@ -345,6 +365,7 @@ class MessageReader(wiring.Component):
                     emit(EventKind.HEARTBEAT)
 
             with m.State("DATA"):
+                m.d.comb += self.nears.eq(1)
                 # 9.4.5.4: a later version may have more fields before the inline QoS.
                 least = Mux(is_fragment, _DATA_FRAG_BYTES, _DATA_BYTES)
                 m.d.sync += [skip.eq(Mux(skip < least, 0, skip - least)), event.is_gone.eq(0)]
@@ -356,7 +377,8 @@ class MessageReader(wiring.Component):
 
             with m.State("BEFORE_INLINE"):
                 is_wrong = (skip > left) | (~is_fragment & flag_data & flag_key)
-                m.d.comb += [packets.ready.eq((skip != 0) & ~is_wrong), parameters.begins.eq(1)]
+                m.d.comb += [wants.eq((skip != 0) & ~is_wrong), parameters.begins.eq(1)]
+                m.d.comb += self.nears.eq(skip == 0)
                 with m.If(takes):
                     m.d.sync += skip.eq(skip - 1)
                 with m.If(is_wrong):
@@ -368,6 +390,7 @@ class MessageReader(wiring.Component):
 
             with m.State("CONTENT"):
                 gone = ~is_fragment & (flag_key | ~flag_data)
+                m.d.comb += self.nears.eq(1)
                 m.d.sync += [event.is_gone.eq(gone), in_payload.eq(1)]
                 m.d.comb += announcement.begins.eq(1)
                 m.next = "SKIP"
@@ -386,24 +409,24 @@ class MessageReader(wiring.Component):
                         emit(EventKind.ENDPOINT_GONE)
                 with m.Elif(~is_builtin):
                     emit(EventKind.SAMPLE)
-                    with m.If(flag_data & (left == 0)):
+                    with m.If(flag_data & ((left == 0) | ~is_first)):
                         malformed()
 
             with m.State("ENCAPSULATION"):
                 # 10.5: PL_CDR, in either byte order.
                 m.d.comb += parameters.begins.eq(1)
-                with m.If((left < 4) & (at == 0)):
+                with m.If((left < WORD_BYTES) | ~is_first):
                     malformed()
                 with m.Else():
-                    m.d.comb += packets.ready.eq(1)
-                    with m.If(aligned):
+                    take_words()
+                    with m.If(takes):
                         m.d.sync += is_little.eq(word[8])
                         m.next = "PARAMETERS"
                         with m.If(word[:16] & 0xFEFF != 0x0200):
                             malformed()
 
             with m.State("PARAMETERS"):
-                m.d.comb += [packets.ready.eq(parameters.wants), parameters.takes.eq(takes)]
+                m.d.comb += [wants.eq(parameters.wants), parameters.takes.eq(takes)]
                 self._inline(m, parameters, in_payload, is_fast)
                 with m.If(parameters.failed):
                     malformed()
@@ -444,14 +467,15 @@ class MessageReader(wiring.Component):
             with m.State("PAYLOAD"):
                 m.d.comb += [
                     self.payload.valid.eq(packets.valid),
-                    packets.ready.eq(self.payload.ready),
+                    wants.eq(self.payload.ready),
+                    step.eq(Mux(left < WORD_BYTES, left, WORD_BYTES)),
                 ]
-                with m.If(takes & (left == 1)):
+                with m.If(takes & self.payload.payload.last):
                     m.next = "DRAIN"
 
             with m.State("FRAGMENTS"):
                 m.d.comb += [
-                    packets.ready.eq(fragments.wants & (left != 0)),
+                    wants.eq(fragments.wants & (left != 0)),
                     fragments.takes.eq(takes),
                 ]
                 with m.If(fragments.is_whole):
@@ -467,14 +491,15 @@ class MessageReader(wiring.Component):
                 m.next = "SKIP"
 
             with m.State("SKIP"):
-                m.d.comb += packets.ready.eq(left != 0)
+                is_whole = is_first & (left >= WORD_BYTES)
+                m.d.comb += [wants.eq(left != 0), step.eq(Mux(is_whole, WORD_BYTES, 1))]
                 with m.If(left == 0):
                     restart("SUBMESSAGE")
 
             with m.State("DROP"):
                 # A datagram without bytes has one beat all the same.
-                m.d.comb += packets.ready.eq((rest != 0) | (self.size == 0))
-                with m.If((rest == 0) | takes & packets.payload.last):
+                m.d.comb += flushes.eq((rest != 0) | (self.size == 0))
+                with m.If((rest == 0) | packets.valid & packets.payload.last):
                     m.next = "START"
         return m
 

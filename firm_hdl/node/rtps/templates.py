@@ -6,9 +6,10 @@ differ are those of fields, and their values tell which ones. So no layout is wr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 from amaranth.lib import data
 
@@ -25,6 +26,7 @@ from firm_hdl.rtps.wire.guid import (
     Guid,
     SampleIdentity,
 )
+from firm_hdl.rtps.wire.octets import padded
 from firm_hdl.rtps.wire.parameters import ParameterList, identity
 from firm_hdl.rtps.wire.submessages import (
     AckNack,
@@ -42,10 +44,11 @@ from firm_hdl.rtps.wire.submessages import (
 __all__ = [
     "FIELDS",
     "HEAD_BYTES",
+    "PAYLOAD",
     "Job",
-    "Op",
     "Template",
     "Templates",
+    "Word",
     "fields_layout",
     "fragment_bytes",
     "op_layout",
@@ -63,8 +66,8 @@ FIELDS = {
     "count": 4,
     "bits": 4,
     "bitmap": 4,
-    "size": 2,
-    "flags": 2,
+    "size": 4,
+    "flags": 4,
     "related": 16,
     "related_number": 4,
 }
@@ -72,18 +75,11 @@ FIELDS = {
 
 `own` and `peer` are GUID prefixes, `reader` and `writer` entity identifiers, and `related` is a
 GUID, in the order of the wire. All others are little-endian. Numbers are the lower half of sequence
-numbers, whose upper half is 0. `size` is the length of the submessage DATA or DATA_FRAG, `flags`
-those of HEARTBEAT, whose second byte is not used. A DATA_FRAG has its number in `first` and the
-size of the sample in `last`; a NACK_FRAG has in `first` the base of its set.
+numbers, whose upper half is 0. `size` has in its upper half the length of the submessage DATA or
+DATA_FRAG, `flags` in its second byte those of HEARTBEAT and ACKNACK: so they are in the places that
+they have in a submessage's header, and the other bits have to be 0. A DATA_FRAG has its number in
+`first` and the size of the sample in `last`; a NACK_FRAG has in `first` the base of its set.
 """
-
-
-class Op(IntEnum):
-    """What a word of the ROM stands for: a byte, a byte of the fields, or the payload."""
-
-    BYTE = 0
-    FIELD = 1
-    PAYLOAD = 2
 
 
 class Job(IntEnum):
@@ -101,16 +97,27 @@ class Job(IntEnum):
     NACK_FRAG = 9
 
 
+PAYLOAD = 31
+"""The number of a word of the fields that stands for the payload."""
+
+
+class Word(NamedTuple):
+    """4 bytes of a datagram, or its payload."""
+
+    value: int  # The bytes that are constant, the first one lowest; others are 0.
+    field: int = 0  # From 1 on: the word of the fields that has all others.
+
+
 @dataclass(frozen=True, slots=True)
 class Template:
     """A datagram."""
 
-    words: tuple[int, ...]  # As `op_layout` has them, without `last`.
+    words: tuple[Word, ...]
 
     @property
     def size(self) -> int:
         """Bytes, without those of a payload."""
-        return sum(each >> 8 != Op.PAYLOAD for each in self.words)
+        return 4 * sum(each.field != PAYLOAD for each in self.words)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,10 +131,10 @@ class Templates:
     graph: int
 
     @property
-    def rom(self) -> list[int]:
-        """The words of all templates, each with `last` in its last word."""
+    def rom(self) -> list[dict[str, int]]:
+        """The words of all templates, as `op_layout` has them."""
         return [
-            word | (number == len(each.words)) << 10
+            {**word._asdict(), "last": number == len(each.words)}
             for each in self.every
             for number, word in enumerate(each.words, 1)
         ]
@@ -151,8 +158,8 @@ def fields_layout() -> data.StructLayout:
 
 
 def op_layout() -> data.StructLayout:
-    """Return a word of the ROM: a byte or the number of a byte of the fields, and what it is."""
-    return data.StructLayout({"value": 8, "op": 2, "last": 1})
+    """Return a word of the ROM: a :class:`Word`, and whether it is the last one of its template."""
+    return data.StructLayout({"value": 32, "field": 5, "last": 1})
 
 
 HEAD_BYTES = {Job.SAMPLE: 20, Job.REPLY: 80, Job.FRAGMENT: 32, Job.REPLY_FRAGMENT: 92}
@@ -230,19 +237,24 @@ _Make = Callable[[Description, _Values], _Parts]
 
 def _template(description: Description, make: _Make) -> Template:
     first, second = (make(description, _Values(offset)) for offset in (0, _HALF))
-    words = [Op.PAYLOAD << 8]
+    words = [Word(0, PAYLOAD)]
     for one, other in zip(first, second, strict=True):
-        words += [*_words(one, other), Op.PAYLOAD << 8]
+        places = range(0, len(one), 4)
+        words += [_word(one[at : at + 4], other[at : at + 4]) for at in places]
+        words.append(Word(0, PAYLOAD))
     return Template(tuple(words[1:-1]))
 
 
-def _words(one: Sequence[int], other: Sequence[int]) -> Iterator[int]:
-    for a, b in zip(one, other, strict=True):
+def _word(one: bytes, other: bytes) -> Word:
+    value, fields = bytearray(4), set()
+    for place, (a, b) in enumerate(zip(one, other, strict=True)):
         if a == b:
-            yield Op.BYTE << 8 | a
+            value[place] = a
         else:
-            assert b - a == _HALF, "a field is not written byte by byte"
-            yield Op.FIELD << 8 | a
+            assert b - a == _HALF and a % 4 == place, "a field is not written word by word"
+            fields.add(1 + a // 4)
+    assert len(one) == 4 and len(fields) <= 1, "a word has two fields"
+    return Word(int.from_bytes(value, "little"), *fields)
 
 
 def _announce(description: Description, values: _Values) -> _Parts:
@@ -268,13 +280,13 @@ def _endpoint(is_writer: bool, number: int) -> _Make:
 def _graph(description: Description, values: _Values) -> _Parts:
     own = own_of(description, values.of["own"])
     writer = own.writers[0].data.guid.entity
-    sample = Data(reader=values.reader, writer=writer, sequence_number=1, payload=own.graph)
+    sample = Data(reader=values.reader, writer=writer, sequence_number=1, payload=padded(own.graph))
     return (values.to_peer(sample),)
 
 
 def _heartbeat(description: Description, values: _Values) -> _Parts:
     datagram = bytearray(values.to_peer(_heartbeat_of(values, values.first, values.last)))
-    datagram[_SIZE_AT - 1] = values.of["flags"][0]
+    datagram[_SIZE_AT - 1] = values.of["flags"][1]
     return (bytes(datagram),)
 
 
@@ -307,7 +319,7 @@ def _acknack(is_missing: bool) -> _Make:
             final=is_missing,
         )
         datagram = bytearray(values.to_peer(answer))
-        datagram[_SIZE_AT - 1] = values.of["flags"][0]
+        datagram[_SIZE_AT - 1] = values.of["flags"][1]
         return (bytes(datagram),)
 
     return make
@@ -350,7 +362,7 @@ def _sample(*, is_reply: bool, is_fragment: bool) -> _Make:
                 inline=inline,
             )
         head = bytearray(values.to_peer(sample))
-        head[_SIZE_AT : _SIZE_AT + 2] = values.of["size"]
+        head[_SIZE_AT : _SIZE_AT + 2] = values.of["size"][2:]
         heartbeat = encode(_heartbeat_of(values, values.first, values.last))
         return bytes(head), b"" if is_fragment else heartbeat
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Module, Mux, Signal
+from amaranth.hdl import Cat, Const, Module, Signal
 from amaranth.lib import data, wiring
 from amaranth.lib.memory import Memory
 from amaranth.lib.wiring import In, Out
@@ -10,7 +10,7 @@ from amaranth.utils import ceil_log2
 
 from firm_hdl.ethernet.datagrams import DatagramSignature
 from firm_hdl.gateware.packets.slice import StreamSlice
-from firm_hdl.node.rtps.templates import Op, Templates, fields_layout, op_layout
+from firm_hdl.node.rtps.templates import PAYLOAD, Templates, fields_layout, op_layout
 
 __all__ = ["Transmitter", "order_layout"]
 
@@ -27,7 +27,7 @@ def order_layout(rom_words: int, memory_bytes: int) -> data.StructLayout:
     address, port : unsigned(32), unsigned(16)
         Where to.
     base, mask, at : bits of an address in the memory of samples
-        Byte n of the payload is at ``base | ((at + n) & mask)``.
+        Byte n of the payload is at ``base | ((at + n) & mask)``; `at` is a multiple of 4.
     payload_bytes : unsigned(16)
     fields : fields_layout()
     """
@@ -48,10 +48,10 @@ def order_layout(rom_words: int, memory_bytes: int) -> data.StructLayout:
 
 
 class Transmitter(wiring.Component):
-    """Play a template, byte by byte.
+    """Play a template, word by word.
 
-    A byte per cycle; 2 cycles from `starts` to the first one, and 2 more before and behind a
-    payload. A payload is padded with zeros to a multiple of 4 bytes (9.4.1).
+    A word per cycle; 2 cycles from `starts` to the first one, and 2 more before and behind a
+    payload. A payload is padded to a multiple of 4 bytes (9.4.1), as it is in the memory.
 
     Parameters
     ----------
@@ -68,10 +68,10 @@ class Transmitter(wiring.Component):
     starts : In(1)
         Send; only while nothing is sent.
     ends : Out(1)
-        High for one cycle when the last byte has been passed on.
-    read_at, reads, byte : Out, Out(1), In(8)
-        Port of the memory of samples, whose byte comes a cycle later.
-    datagrams : Out(DatagramSignature(1))
+        High for one cycle when the last word has been passed on.
+    read_at, reads, word : Out, Out(1), In(32)
+        Port of the memory of samples, whose word comes a cycle later.
+    datagrams : Out(DatagramSignature(4))
     """
 
     def __init__(self, templates: Templates, memory_bytes: int, port: int):
@@ -84,29 +84,30 @@ class Transmitter(wiring.Component):
                 "ends": Out(1),
                 "read_at": Out(layout.members["at"]),
                 "reads": Out(1),
-                "byte": In(8),
-                "datagrams": Out(DatagramSignature(1)),
+                "word": In(32),
+                "datagrams": Out(DatagramSignature(4)),
             }
         )
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
         order = self.order
-        m.submodules.slice = out = StreamSlice(data.StructLayout({"data": 8, "last": 1}))
+        m.submodules.slice = out = StreamSlice(data.StructLayout({"data": 32, "last": 1}))
         datagrams, word = self.datagrams, self.datagrams.payload
-        m.submodules.rom = rom = Memory(shape=op_layout(), depth=len(self.rom), init=self._init())
+        m.submodules.rom = rom = Memory(shape=op_layout(), depth=len(self.rom), init=self.rom)
         op_port = rom.read_port()
         op = op_port.data
         at = Signal(range(len(self.rom) + 1))
-        place = Signal(17)
-        moves, is_pad, is_last = Signal(), Signal(), Signal()
-        field = Cat(order.fields).word_select(op.value[:7], 8)
+        place = Signal(15)
+        moves, is_end, is_last = Signal(), Signal(), Signal()
+        # The first word of the fields has the number 1.
+        field = Cat(Const(0, 32), order.fields).word_select(op.field, 32)
         m.d.comb += [
             datagrams.valid.eq(out.o.valid),
             out.o.ready.eq(datagrams.ready),
             word.data.eq(out.o.payload.data),
             word.last.eq(out.o.payload.last),
-            word.last_be.eq(word.last),
+            word.last_be.eq(Cat(Const(0, 3), word.last)),
             word.length.eq(order.size),
             word.ip_address.eq(order.address),
             word.src_port.eq(self.port),
@@ -114,8 +115,8 @@ class Transmitter(wiring.Component):
             self.ends.eq(datagrams.valid & datagrams.ready & word.last),
             moves.eq(out.i.valid & out.i.ready),
             op_port.addr.eq(at),
-            is_pad.eq(place >= order.payload_bytes),
-            self.read_at.eq(order.base | ((order.at + place) & order.mask)),
+            is_end.eq(Cat(Const(0, 2), place) >= order.payload_bytes),
+            self.read_at.eq(order.base | ((order.at + Cat(Const(0, 2), place)) & order.mask)),
         ]
         # Each state reads the word of the next cycle.
         with m.FSM():
@@ -129,10 +130,10 @@ class Transmitter(wiring.Component):
                 m.d.sync += [at.eq(at + 1), place.eq(0)]
                 m.next = "PLAY"
             with m.State("PLAY"):
-                is_payload = op.op == Op.PAYLOAD
+                is_payload = op.field == PAYLOAD
                 m.d.comb += [
                     out.i.valid.eq(~is_payload),
-                    out.i.payload.data.eq(Mux(op.op == Op.FIELD, field, op.value)),
+                    out.i.payload.data.eq(op.value | field),
                     out.i.payload.last.eq(op.last),
                     op_port.en.eq(moves),
                 ]
@@ -146,15 +147,10 @@ class Transmitter(wiring.Component):
                     m.next = "PAYLOAD"
             with m.State("PAYLOAD"):
                 # `place` is one ahead, as the memory answers a cycle later.
-                shown = Signal(17)
-                is_byte, is_end = Signal(), Signal()
                 m.d.comb += [
-                    shown.eq(place - 1),
-                    is_byte.eq(shown < order.payload_bytes),
-                    is_end.eq((place[:2] == 0) & is_pad),
                     out.i.payload.last.eq(is_last & is_end),
                     out.i.valid.eq(1),
-                    out.i.payload.data.eq(Mux(is_byte, self.byte, 0)),
+                    out.i.payload.data.eq(self.word),
                     op_port.en.eq(0),
                     self.reads.eq(moves),
                 ]
@@ -165,9 +161,3 @@ class Transmitter(wiring.Component):
                         with m.If(is_last):
                             m.next = "IDLE"
         return m
-
-    def _init(self) -> list[dict[str, int]]:
-        """Return the words as values of `op_layout`."""
-        return [
-            {"value": word & 0xFF, "op": word >> 8 & 3, "last": word >> 10} for word in self.rom
-        ]

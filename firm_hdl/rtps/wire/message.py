@@ -47,8 +47,18 @@ class Message:
 
 def write(prefix: bytes, submessages: Iterable[Submessage], little: bool = True) -> bytes:
     """Return a datagram of the participant `prefix`."""
-    header = _MAGIC + _VERSION + VENDOR + prefix
-    return header + b"".join(encode(each, little) for each in submessages)
+    every = tuple(submessages)
+    return (
+        _MAGIC
+        + _VERSION
+        + VENDOR
+        + prefix
+        + b"".join(
+            # 9.4.5.1.3: all but the last one end with a word.
+            encode(each, little, pads=number < len(every))
+            for number, each in enumerate(every, 1)
+        )
+    )
 
 
 def read(datagram: bytes, receiver: bytes) -> Message:

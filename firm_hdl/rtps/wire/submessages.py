@@ -364,14 +364,15 @@ Submessage: TypeAlias = (
 _OF_KIND = {each.KIND: each for each in get_args(Submessage)}
 
 
-def encode(submessage: Submessage, little: bool = True) -> bytes:
-    """Return a submessage with its header (9.4.5.1).
+def encode(submessage: Submessage, little: bool = True, pads: bool = False) -> bytes:
+    """Return a submessage with its header (9.4.5.1); with `pads`, its body ends with a word.
 
     A body of more than 65,535 bytes has the length 0, which means "to the end of the datagram"; so
     it has to be the last one.
     """
     order = "<" if little else ">"
     flags, body = submessage.body(order)
+    body += bytes(-len(body) % 4 if pads else 0)
     size = len(body) if len(body) <= 0xFFFF else 0
     return struct.pack(order + "BBH", submessage.KIND, flags | little, size) + body
 

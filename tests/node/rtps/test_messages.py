@@ -5,12 +5,12 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
-from amaranth.hdl import Cat
+from amaranth.hdl import Cat, Value
 from amaranth.sim import Simulator
 
 from firm_hdl.node.description import Link
 from firm_hdl.node.rtps.events import EventKind
-from firm_hdl.node.rtps.messages import MessageReader
+from firm_hdl.node.rtps.messages import WORD_BYTES, MessageReader
 from firm_hdl.rtps.wire import message
 from firm_hdl.rtps.wire.guid import Guid, SampleIdentity
 from firm_hdl.rtps.wire.octets import MalformedError
@@ -44,7 +44,7 @@ def submessages(rng):
     members = [base + n for n in range(32) if rng.random() < 0.4]
     numbers = NumberSet.of(base, members)
     ends = {"reader": READER, "writer": WRITER}
-    payload = rng.randbytes(rng.choice((4, 5, 32)))
+    payload = rng.randbytes(rng.choice((4, 8, 32)))
     sample = {**ends, "sequence_number": rng.choice((1, 2, 1 << 31))}
     every = [
         Heartbeat(**ends, first=base, last=base + 2, count=3, final=rng.random() < 0.5),
@@ -64,7 +64,11 @@ def submessages(rng):
         InfoSource(rng.choice((PEER, bytes(range(12))))),
         InfoTimestamp(rng.choice((None, 10**18))),
     ]
-    return rng.sample(every, rng.randrange(1, 5))
+    some = rng.sample(every, rng.randrange(1, 5))
+    if isinstance(some[-1], Data) and not some[-1].key:
+        # 9.4.1: only the last submessage may end in a word.
+        some[-1] = replace(some[-1], payload=payload + bytes(rng.randrange(4)))
+    return some
 
 
 def within(numbers):
@@ -112,6 +116,7 @@ def read(datagrams):
         packets, event = reader.packets, reader.events.payload
         ctx.set(reader.own, int.from_bytes(OWN, "little"))
         ctx.set(Cat(reader.knows, reader.wants, reader.payload.ready, reader.drained), 15)
+        word, content = packets.payload, reader.payload.payload
         for datagram in datagrams:
             found, dropped, payload, at = [], False, bytearray(), 0
             ctx.set(reader.size, len(datagram))
@@ -121,13 +126,16 @@ def read(datagrams):
             while at < len(datagram) or quiet < 12:
                 quiet += 1
                 if at < len(datagram):
-                    ctx.set(packets.payload.data[0], datagram[at])
-                    ctx.set(packets.payload.last, at + 1 == len(datagram))
+                    beat = datagram[at : at + WORD_BYTES]
+                    ctx.set(Value.cast(word.data), int.from_bytes(beat, "little"))
+                    ctx.set(word.count, len(beat))
+                    ctx.set(word.last, at + len(beat) == len(datagram))
                 taken, comes = ctx.get(packets.ready), ctx.get(reader.events.valid)
                 dropped |= bool(ctx.get(reader.malformed))
-                if ctx.get(reader.payload.valid) and taken:
-                    payload.append(ctx.get(reader.payload.payload.data[0]))
-                    if ctx.get(reader.payload.payload.last):
+                if ctx.get(reader.payload.valid):
+                    size, data = ctx.get(content.count), ctx.get(Value.cast(content.data))
+                    payload += data.to_bytes(WORD_BYTES, "little")[:size]
+                    if ctx.get(content.last):
                         found[-1] = (*found[-1][:3], bytes(payload))
                         payload.clear()
                 if comes:
@@ -135,7 +143,7 @@ def read(datagrams):
                     quiet = 0
                 await ctx.tick()
                 if at < len(datagram) and taken:
-                    at, quiet = at + 1, 0
+                    at, quiet = at + len(beat), 0
                     if at == len(datagram):
                         ctx.set(packets.valid, 0)
             results.append(([each for each in found if each is not None], dropped))

@@ -39,7 +39,7 @@ FIELD_VALUES = {
     "count": (0x01020304).to_bytes(4, "little"),
     "bits": (2).to_bytes(4, "little"),
     "bitmap": (3 << 30).to_bytes(4, "little"),
-    "flags": b"\1\0",
+    "flags": b"\0\1\0\0",
     "related": bytes(RELATED),
     "related_number": (7).to_bytes(4, "little"),
 }
@@ -54,11 +54,11 @@ def played(templates, job):
     async def bench(ctx):
         for name in FIELD_VALUES:
             ctx.set(order.fields[name], int.from_bytes(FIELD_VALUES[name], "little"))
-        ctx.set(order.fields.size, HEAD_BYTES.get(job, 0) + 12)
+        ctx.set(order.fields.size, (HEAD_BYTES.get(job, 0) + 12) << 16)
         ctx.set(order.start, templates.starts[job])
         # The payload lies across the end of the memory.
         ctx.set(order.mask, 15)
-        ctx.set(order.at, 10)
+        ctx.set(order.at, 12)
         ctx.set(order.payload_bytes, len(PAYLOAD))
         ctx.set(transmitter.starts, 1)
         await ctx.tick()
@@ -68,16 +68,16 @@ def played(templates, job):
             cycles += 1
             ctx.set(out.ready, cycles % 3 != 0)
             if ctx.get(transmitter.reads):
-                place = (ctx.get(transmitter.read_at) - 10) % 16
-                byte = PAYLOAD[place] if place < len(PAYLOAD) else 0xEE
+                place = (ctx.get(transmitter.read_at) - 12) % 16
+                word = (PAYLOAD + bytes(8))[place : place + 4]
             if ctx.get(out.valid) and cycles % 3 != 0:
-                got.append(ctx.get(out.payload.data))
+                got.extend(ctx.get(out.payload.data).to_bytes(4, "little"))
                 if ctx.get(out.payload.last):
                     return
             was_read = ctx.get(transmitter.reads)
             await ctx.tick()
             if was_read:
-                ctx.set(transmitter.byte, byte)
+                ctx.set(transmitter.word, int.from_bytes(word, "little"))
 
     simulator = Simulator(transmitter)
     simulator.add_clock(1e-6)
