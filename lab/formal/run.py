@@ -53,8 +53,10 @@ def _induction(proof: Proof, timeout: float) -> Answer:
     if start.result != "proved":
         return start
     step = _decide(proof, timeout, is_step=True, method="BMC", depth=2)
-    result = "proved" if step.result == "proved" else "undecided"
-    return replace(step, result=result, seconds=start.seconds + step.seconds)
+    # A state that breaks it may be one that no run has.
+    if step.result == "broken":
+        step = replace(step, result="undecided")
+    return replace(step, seconds=start.seconds + step.seconds)
 
 
 def _decide(proof: Proof, timeout: float, *, is_step: bool = False, **how: object) -> Answer:

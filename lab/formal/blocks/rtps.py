@@ -12,7 +12,7 @@ from amaranth.hdl import Array, Cat, Mux, Signal, Value
 from firm_hdl.node.description import Link
 from firm_hdl.node.rtps.assembler import Assembler
 from firm_hdl.node.rtps.events import EventKind
-from firm_hdl.node.rtps.messages import _LEAST, MessageReader
+from firm_hdl.node.rtps.messages import _LEAST, WORD_BYTES, MessageReader
 from firm_hdl.node.rtps.parameters import ParameterReader
 from firm_hdl.rtps.wire.submessages import (
     AckNack,
@@ -56,74 +56,64 @@ _WAITED = {
 }
 """How many of them can have gone by in a state of the reader."""
 
-_HEADER_BYTES, _PAD = 20, 1
+_HEADER_WORDS, _PAD = 5, 1
 
 
 class _Walk:
-    """Where a datagram stands, by the lengths in it alone (9.4.5.1).
+    """Where a datagram stands, by the lengths in it alone (9.4.5.1), a word at a time.
 
     Attributes
     ----------
     togo : Value
-        Bytes of the datagram that were not taken yet.
+        Bytes of the datagram that did not leave yet, with their word.
     begun : Signal
-        One of them was.
+        A word of it left.
     kind, left : Signal
         The submessage, and bytes that it has yet.
-    head, place : Signal
-        Bytes that were taken of the header, and of that of a submessage.
-    older : Signal
-        The last three bytes.
-    to_end : Value
-        The submessage with the header `older` goes to the end of the datagram.
+    head : Signal
+        Words that left of the header.
     """
 
     def __init__(self, scene: Scene, block: MessageReader):
-        m, packets, byte = scene.m, block.packets, scene.free(8, "byte")
+        m, packets = scene.m, block.packets
+        word = scene.free(32, "word")
         size, begun = Signal(16, name="size", reset_less=True), Signal(name="begun")
         kept, last, held = Signal(16, name="kept"), Signal(name="last"), Signal(name="held")
-        self.togo, self.begun, takes = Mux(begun, kept, size), begun, fires(packets)
+        self.togo, self.begun = Mux(begun, kept, size), begun
         m.d.comb += [
-            last.eq(self.togo <= 1),
+            last.eq(self.togo <= WORD_BYTES),
             block.size.eq(size),
             packets.valid.eq(held | scene.free(1, "offers")),
-            Cat(packets.payload.data).eq(byte),
-            packets.payload.count.eq(size != 0),
+            Value.cast(packets.payload.data).eq(word),
+            packets.payload.count.eq(Mux(last, self.togo, WORD_BYTES)),
             packets.payload.last.eq(last),
         ]
         m.d.sync += held.eq(packets.valid & ~packets.ready)
         self.kind, self.left = Signal(8, name="walk_kind"), Signal(16, name="walk_left")
-        self.head, self.place = Signal(5, name="walk_head"), Signal(2, name="walk_place")
-        self.older, self.length = Signal(24, name="walk_older"), Signal(16, name="walk_length")
-        bounds = self.older[16:], byte
-        m.d.comb += self.length.eq(Mux(self.older[8], Cat(bounds), Cat(reversed(bounds))))
-        with m.If(takes):
-            m.d.sync += [begun.eq(~last), kept.eq(self.togo - 1)]
-            m.d.sync += self.older.eq(Cat(self.older[8:], byte))
+        self.head = Signal(3, name="walk_head")
+        kind, bounds = word[:8], (word[16:24], word[24:])
+        length = Mux(word[8], Cat(bounds), Cat(reversed(bounds)))
+        to_end = (length == 0) & (kind != _PAD) & (kind != InfoTimestamp.KIND)
+        rest = Mux(last, 0, self.togo - WORD_BYTES)
+        with m.If(fires(packets)):
+            m.d.sync += [begun.eq(~last), kept.eq(rest)]
             with m.If(last):
                 m.d.sync += size.eq(scene.free(16, "next_size"))
             with m.If(~begun):
-                m.d.sync += [self.head.eq(1), self.place.eq(0), self.left.eq(0), self.kind.eq(0)]
-            with m.Elif(self.head != _HEADER_BYTES):
+                m.d.sync += [self.head.eq(1), self.left.eq(0), self.kind.eq(0)]
+            with m.Elif(self.head != _HEADER_WORDS):
                 m.d.sync += self.head.eq(self.head + 1)
             with m.Elif(self.left != 0):
-                m.d.sync += self.left.eq(self.left - 1)
+                m.d.sync += self.left.eq(Mux(self.left < WORD_BYTES, 0, self.left - WORD_BYTES))
             with m.Else():
-                m.d.sync += self.place.eq(self.place + 1)
-                with m.If(self.place == 3):
-                    kind = self.older[:8]
-                    to_end = (self.length == 0) & (kind != _PAD) & (kind != InfoTimestamp.KIND)
-                    m.d.sync += [
-                        self.kind.eq(kind),
-                        self.left.eq(Mux(to_end, self.togo - 1, self.length)),
-                    ]
+                m.d.sync += [self.kind.eq(kind), self.left.eq(Mux(to_end, rest, length))]
 
 
 def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
     """Return what always holds of the reader's state: with it, each claim follows from a cycle."""
     reader, parser = inner["MessageReader"], inner["ParameterReader"]
-    state, rest, left, at, kind = reader.state, reader.rest, reader.left, reader.at, reader.kind
-    event = reader.event
+    state, rest, left, kind = reader.state, reader.rest, reader.left, reader.kind
+    event, place, at = reader.event, reader.place, Cat(0, 0, reader.index)
 
     def has(bytes_in_all: Any, left: Value = left, at: Value = at) -> Value:
         """Of what is being read, `at` bytes were taken; there are enough for the others."""
@@ -137,29 +127,34 @@ def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
     body = ~outside & ~state("LENGTH", "CHECK")
     is_sample = (event.kind == EventKind.SAMPLE) & ~event.is_gone & ~reader.is_part
     in_list = parser.state("CHECK", "VALUE") | (parser.place != 0)
-    new = (walk.left == 0) & (walk.place == 0) & (walk.kind == 0) & (kind == 0)
+    new = (walk.left == 0) & (walk.kind == 0) & (kind == 0)
     is_data, is_fragment = kind == Data.KIND, kind == DataFrag.KIND
     is_set = (kind == Gap.KIND) | (kind == AckNack.KIND) | (kind == NackFrag.KIND)
     in_data = state("DATA", "BEFORE_INLINE", "CONTENT", "PARAMETERS", "LISTED")
     in_announcement = state("PARAMETERS", "LISTED") & reader.in_payload
+    is_over = ~walk.begun & (place == 0)
     return Cat(
-        reader.older == walk.older,
-        Mux(state("START"), ~walk.begun, Mux(rest == 0, ~walk.begun, rest == walk.togo)),
-        ~state("HEADER") | (has(20, rest) & (walk.begun == (at != 0)) & (kind == 0)),
-        ~state("HEADER") | (at == 0) | ((walk.head == at) & new),
-        state("START", "HEADER", "DROP") | (walk.head == _HEADER_BYTES),
+        state(),
+        parser.state(),
+        # In DROP, words leave whole.
+        ~state("START") | is_over,
+        state("START") | (rest != 0) | is_over,
+        state("START") | (rest == 0) | (state("DROP") & walk.begun) | (rest + place == walk.togo),
+        state("START", "HEADER", "DROP") | (walk.head == _HEADER_WORDS),
         state("START", "HEADER", "DROP") | walk.begun | (rest == 0),
-        ~is_header | new,
-        ~state("SUBMESSAGE") | (at == 0) | has(4, rest),
-        ~state("SUBMESSAGE") | ((walk.left == 0) & (walk.place == at)),
-        ~state("LENGTH", "CHECK") | (at == 0),
+        ~state("HEADER") | (has(20, rest) & (walk.begun == (at != 0)) & (kind == 0)),
+        ~state("HEADER") | (at == 0) | ((walk.head == reader.index) & new),
+        ~state("HEADER", "LENGTH", "CHECK", "FIELDS", "SET", "HEARTBEAT", "DATA") | (place == 0),
+        ~state("PAYLOAD") | (place == 0),
+        ~is_header | (new & (place == 0)),
+        ~state("SUBMESSAGE") | (walk.left == place),
+        ~state("CHECK") | (reader.index == 0),
+        ~state("LENGTH") | (reader.index == 0),
         ~state("LENGTH") | (walk.left == Mux(reader.to_end, rest, reader.length)),
-        ~(body | state("CHECK")) | (walk.left == left),
-        ~(body | state("LENGTH", "CHECK")) | ((walk.kind == kind) & (walk.place == 0)),
+        ~(body | state("CHECK")) | (walk.left == left + place),
+        ~(body | state("LENGTH", "CHECK")) | (walk.kind == kind),
         ~body | (left <= rest),
         ~state("FIELDS") | has(fields),
-        ~state("SET", "ENCAPSULATION") | (at == 0) | has(4),
-        ~state("SET") | (at == 0) | (reader.words != 0),
         ~state("SET") | is_set,
         ~state("HEARTBEAT") | (kind == Heartbeat.KIND),
         ~in_data | is_data | is_fragment,
@@ -167,7 +162,7 @@ def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
         ~(state("ENCAPSULATION") | in_announcement) | is_data,
         ~state("FRAGMENTS") | is_fragment,
         ~state("PAYLOAD") | (left != 0),
-        ~(state("EVENT") & is_sample) | (left != 0),
+        ~(state("EVENT") & is_sample) | ((left != 0) & (place == 0)),
         ~in_list | state("PARAMETERS"),
         parser.state("HEAD", "VALUE") | (parser.place == 0),
         ~parser.state("HEAD") | (parser.place == 0) | has(4, left, parser.place),
@@ -193,8 +188,10 @@ def _reader(scene: Scene) -> None:
     ]
     taken, played = sink(scene, events, "events"), sink(scene, payload, "payload")
     rules(scene, events, "events")
-    takes, in_step = fires(packets), _in_step(inner, walk)
-    scene.claim("whole datagrams", ~takes | (reader.rest == walk.togo))
+    in_step = _in_step(inner, walk)
+    first = fires(packets) & ~walk.begun
+    scene.claim("whole datagrams", ~first | state("HEADER", "DROP"))
+    scene.claim("whole datagrams", ~first | (reader.rest == block.size))
     # What an event is about is the submessage that the lengths lead to.
     kinds = {
         EventKind.SAMPLE: (Data.KIND, DataFrag.KIND),
@@ -210,10 +207,14 @@ def _reader(scene: Scene) -> None:
         is_event = events.valid & (events.payload.kind == event)
         in_step = in_step & (~is_event | allowed)
     for name in _INDUCTIVE:
-        scene.claim(name, in_step & state() & parser.state())
-    inside = (walk.left != 0) & (walk.togo >= walk.left)
-    scene.claim("inside", ~(fires(payload) | fragments.takes) | inside)
-    scene.claim("inside", ~fires(payload) | (payload.payload.last == (walk.left == 1)))
+        scene.claim(name, in_step)
+    # A word is not read beyond its end, nor a submessage beyond its own.
+    taken_to = reader.place + reader.step
+    scene.claim("inside", ~reader.takes | (taken_to <= packets.payload.count))
+    inside = (reader.step <= reader.left) & (walk.left <= walk.togo)
+    is_body = fires(payload) | fragments.takes | (reader.takes & state("PARAMETERS", "FIELDS"))
+    scene.claim("inside", ~is_body | inside)
+    scene.claim("inside", ~fires(payload) | (payload.payload.last == (walk.left <= WORD_BYTES)))
     waits = (events.valid & ~taken) | (payload.valid & ~played) | ~block.drained
     waited = progress(scene, "input moves", packets.valid & ~packets.ready & ~waits, WAITS)
     for name, most in _WAITED.items():
@@ -277,7 +278,7 @@ def studies() -> list[Study]:
         "whole datagrams": Bug(_READER, "(rest == 0) | takes & packets", "takes & packets"),
         "submessages": Bug(_READER, "Mux(to_end, rest, length)", "length"),
         "inside": Bug(_READER, "skip > left", "skip > rest"),
-        "input moves": Bug(_READER, "packets.ready.eq(left != 0)", "packets.ready.eq(left > 1)"),
+        "input moves": Bug(_READER, "wants.eq(left != 0), step", "wants.eq(left > 1), step"),
     }
     parameters = {
         "inside": Bug(_LIST, "size > self.left", "size > self.left + 1"),
