@@ -1,4 +1,4 @@
-"""Claims about the receiver of RTPS: the walk over a datagram, lists of parameters, fragments.
+"""Claims about the receiver of RTPS: the walk over a datagram, lists of parameters.
 
 Datagrams have any bytes, and any size.
 """
@@ -10,7 +10,6 @@ from typing import Any
 from amaranth.hdl import Array, Cat, Mux, Signal, Value
 
 from firm_hdl.node.description import Link
-from firm_hdl.node.rtps.assembler import Assembler
 from firm_hdl.node.rtps.events import EventKind
 from firm_hdl.node.rtps.messages import _LEAST, WORD_BYTES, MessageReader
 from firm_hdl.node.rtps.parameters import ParameterReader
@@ -30,31 +29,6 @@ from lab.formal.scene import Scene
 from lab.formal.streams import fires, progress, rules, sink
 
 __all__ = ["studies"]
-
-WAITS = 13
-"""Cycles without a byte between two bytes, while nothing else waits: the way over the end of one
-datagram to the next one."""
-
-_WAITED = {
-    **dict.fromkeys(("LENGTH", "DATA", "HEARTBEAT", "SET"), 0),
-    "CHECK": 1,
-    "BEFORE_INLINE": 1,
-    "FIELDS": 2,
-    "PARAMETERS": 3,
-    "LISTED": 4,
-    "CONTENT": 5,
-    "ENCAPSULATION": 6,
-    "FRAGMENTS": 7,
-    "EVENT": 8,
-    "DRAIN": 9,
-    "PAYLOAD": 9,
-    "SKIP": 10,
-    "SUBMESSAGE": 11,
-    "START": 12,
-    "HEADER": 13,
-    "DROP": 13,
-}
-"""How many of them can have gone by in a state of the reader."""
 
 _HEADER_WORDS, _PAD = 5, 1
 
@@ -176,7 +150,7 @@ def _reader(scene: Scene) -> None:
     inner = scene.inside(block)
     walk = _Walk(scene, block)
     packets, events, payload = block.packets, block.events, block.payload
-    fragments, reader, parser = block.fragments, inner["MessageReader"], inner["ParameterReader"]
+    fragments, reader = block.fragments, inner["MessageReader"]
     state = reader.state
     m.d.comb += [
         block.own.eq(scene.rigid(96, "own")),
@@ -186,14 +160,14 @@ def _reader(scene: Scene) -> None:
         fragments.wants.eq(scene.free(1, "fragments_wanted")),
         fragments.is_whole.eq(scene.free(1, "is_whole")),
     ]
-    taken, played = sink(scene, events, "events"), sink(scene, payload, "payload")
+    sink(scene, events, "events")
+    sink(scene, payload, "payload")
     rules(scene, events, "events")
     in_step = _in_step(inner, walk)
-    first = fires(packets) & ~walk.begun
-    scene.claim("whole datagrams", ~first | state("HEADER", "DROP"))
-    scene.claim("whole datagrams", ~first | (reader.rest == block.size))
     # What an event is about is the submessage that the lengths lead to.
+    of_data = ("PARTICIPANT", "PARTICIPANT_GONE", "ENDPOINT", "ENDPOINT_GONE")
     kinds = {
+        **{EventKind[name]: (Data.KIND,) for name in of_data},
         EventKind.SAMPLE: (Data.KIND, DataFrag.KIND),
         EventKind.FRAGMENT: (DataFrag.KIND,),
         EventKind.HEARTBEAT: (Heartbeat.KIND,),
@@ -202,12 +176,11 @@ def _reader(scene: Scene) -> None:
         EventKind.NACK_FRAG: (NackFrag.KIND,),
         EventKind.SOURCE: (0, InfoSource.KIND),
     }
-    for event in EventKind:
-        allowed = Cat(walk.kind == kind for kind in kinds.get(event, (Data.KIND,))).any()
+    for event, numbers in kinds.items():
+        allowed = Cat(walk.kind == kind for kind in numbers).any()
         is_event = events.valid & (events.payload.kind == event)
         in_step = in_step & (~is_event | allowed)
-    for name in _INDUCTIVE:
-        scene.claim(name, in_step)
+    scene.claim("inside", in_step)
     # A word is not read beyond its end, nor a submessage beyond its own.
     taken_to = reader.place + reader.step
     scene.claim("inside", ~reader.takes | (taken_to <= packets.payload.count))
@@ -215,18 +188,6 @@ def _reader(scene: Scene) -> None:
     is_body = fires(payload) | fragments.takes | (reader.takes & state("PARAMETERS", "FIELDS"))
     scene.claim("inside", ~is_body | inside)
     scene.claim("inside", ~fires(payload) | (payload.payload.last == (walk.left <= WORD_BYTES)))
-    waits = (events.valid & ~taken) | (payload.valid & ~played) | ~block.drained
-    waited = progress(scene, "input moves", packets.valid & ~packets.ready & ~waits, WAITS)
-    for name, most in _WAITED.items():
-        scene.claim("input moves", ~state(name) | (waited <= most))
-    is_first = state("EVENT") & (events.payload.kind == EventKind.FRAGMENT)
-    scene.claim("input moves", ~is_first | (waited <= 6))
-    scene.claim(
-        "input moves", ~state("DROP") | (reader.rest != 0) | (block.size == 0) | (waited <= 11)
-    )
-    for name, most in (("CHECK", 0), ("VALUE", 1), ("HEAD", 2)):
-        here = state("PARAMETERS") & parser.state(name)
-        scene.claim("input moves", ~here | (waited <= most))
 
 
 def _list(scene: Scene) -> None:
@@ -255,10 +216,10 @@ def _list(scene: Scene) -> None:
     scene.claim("input moves", (waited <= 1) | ~parser.state("HEAD", "VALUE"))
 
 
-_READER, _LIST, _ASSEMBLER = MessageReader.elaborate, ParameterReader.elaborate, Assembler.elaborate
+_READER, _LIST = MessageReader.elaborate, ParameterReader.elaborate
 
 
-_INDUCTIVE = ("whole datagrams", "submessages", "inside", "input moves")
+_INDUCTIVE = ("inside", "input moves")
 
 
 def _claims(bugs: dict[str, Bug]) -> tuple[Claim, ...]:
@@ -275,10 +236,7 @@ def studies() -> list[Study]:
         "payload stays": Bug(
             _READER, "is_known.eq(self.knows)", "[is_known.eq(self.knows), event.last.eq(0)]"
         ),
-        "whole datagrams": Bug(_READER, "(rest == 0) | takes & packets", "takes & packets"),
-        "submessages": Bug(_READER, "Mux(to_end, rest, length)", "length"),
         "inside": Bug(_READER, "skip > left", "skip > rest"),
-        "input moves": Bug(_READER, "wants.eq(left != 0), step", "wants.eq(left > 1), step"),
     }
     parameters = {
         "inside": Bug(_LIST, "size > self.left", "size > self.left + 1"),
