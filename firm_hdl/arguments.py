@@ -86,7 +86,7 @@ def check_types_or_all(given: argparse.Namespace) -> None:
         given.usage_error("name either types or --all")
 
 
-def add_origins(command: argparse.ArgumentParser) -> None:
+def add_origins(command: argparse._ActionsContainer) -> None:
     """Add the origins of definitions. ``--distro`` overrides the distribution of a recording."""
     command.add_argument(
         "--distro",

@@ -3,7 +3,8 @@
 ``python -m lab.definitions --distro noetic --path my_ws/src -n 1000`` changes real definitions by
 rules, which drop, double and swap characters and words, and change types, names, values and lines.
 A change depends only on its number and on the definitions to choose from: ``--seed S -n 1`` makes
-that of the number S again.
+that of the number S again. A changed definition has a name of its own in the package, because
+readers keep what they have read: `Pose` becomes `Pose0`, `Pose1` and so on.
 """
 
 from __future__ import annotations
@@ -14,12 +15,18 @@ import random
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
+from copy import copy
 from dataclasses import replace
+from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import ClassVar
 
-from firm_hdl.frontend import DISTROS
+from firm_hdl.errors import Source
+from firm_hdl.frontend import DISTROS, Library
+from firm_hdl.frontend.names import Kind
+from firm_hdl.frontend.sources import Definition, PackagePlace
 from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.ts1.judge import judge, read
 from firm_hdl.verify.ts1.oracles import ORACLES
@@ -40,11 +47,14 @@ _TYPES = (
 ).split()
 _NAMES = "x a_b a__b a_ _a A aB Ab A_B range a1 1a é message".split()
 
+# `ros2` knows installed packages only, and rosbags is not meant to find mistakes.
+_READERS = [name for name in ORACLES if name not in ("rosbags", "ros2")]
+
 _Rule = Callable[[random.Random, str], str]
 
 
-def mutation(cases: Sequence[DefinitionCase], number: int) -> DefinitionCase:
-    """Make a mutation.
+def mutation(cases: Sequence[DefinitionCase], number: int) -> tuple[str, DefinitionCase]:
+    """Make a mutation; return the text before it, too.
 
     Parameters
     ----------
@@ -57,9 +67,13 @@ def mutation(cases: Sequence[DefinitionCase], number: int) -> DefinitionCase:
     small = [case for case in cases if len(case.text) <= _MOST_CHARACTERS] or list(cases)
     while True:
         case = generator.choice(small)
-        text = mutate(case.text, generator)
-        if text != case.text or not case.text:
-            return replace(case, text=text, before=case.text)
+        name, before = f"{case.name}{number}", case.text
+        if case.language == "idl":
+            # The file of a type has its name.
+            before = re.sub(rf"\b{case.name}(?=\b|_)", name, before)
+        text = mutate(before, generator)
+        if text != before or not before:
+            return before, replace(case, name=name, text=text, source="")
 
 
 def mutate(text: str, generator: random.Random) -> str:
@@ -179,10 +193,44 @@ _RULES: tuple[_Rule, ...] = (
 )
 
 
-def _changes(case: DefinitionCase) -> list[str]:
+class _Added:
+    """An origin that has only the text of one case."""
+
+    packages: ClassVar[Mapping[str, PackagePlace]] = {}
+
+    def __init__(self, case: DefinitionCase) -> None:
+        self._case = case
+        self._key = case.package, case.kind, case.name
+
+    def names(self) -> Iterable[tuple[str, Kind, str]]:
+        return [self._key]
+
+    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
+        if (package, kind, name) != self._key:
+            return None
+        source = Source(name=self._case.file, text=self._case.text)
+        return Definition(source=source, language=self._case.language)
+
+
+def _with(universe: Universe, case: DefinitionCase) -> Universe:
+    """Add a case to the folder of a universe; return the universe with it for our reader."""
+    folder = Path(universe.folder, case.package, case.kind)
+    if folder.is_symlink():
+        # The folder is the user's.
+        own = folder.resolve()
+        folder.unlink()
+        folder.mkdir()
+        for each in own.iterdir():
+            (folder / each.name).symlink_to(each)
+    (folder / case.file).write_bytes(case.text.encode("utf-8", "surrogateescape"))
+    found = copy(universe)
+    found.library = Library(universe.distro, origins=[_Added(case), *universe.origins])
+    return found
+
+
+def _changes(before: str, text: str) -> list[str]:
     """Return the lines that a change has removed (``-``) and added (``+``)."""
-    before = (case.before or "").splitlines()
-    lines = list(difflib.unified_diff(before, case.text.splitlines(), lineterm="", n=0))
+    lines = list(difflib.unified_diff(before.splitlines(), text.splitlines(), lineterm="", n=0))
     return [repr(line)[1:-1] for line in lines[2:] if not line.startswith("@@")]
 
 
@@ -192,7 +240,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("types", nargs="*", help="definitions to change; default: all")
     parser.add_argument("--distro", choices=list(DISTROS), default="lyrical")
     parser.add_argument("--path", action="append", default=[])
-    parser.add_argument("--oracle", action="append", choices=list(ORACLES))
+    parser.add_argument("--oracle", action="append", choices=_READERS)
     parser.add_argument("-n", type=int, default=1000, help="number of changed definitions")
     parser.add_argument("--seed", type=int, default=0, help="number of the first one")
     given = parser.parse_args(arguments)
@@ -202,20 +250,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         universe = Universe(given.distro, given.path, folder)
         write_definitions(universe)
         originals = universe.select(given.types)
-        oracles = [ORACLES[name](universe) for name in given.oracle or ORACLES]
+        oracles = [ORACLES[name](universe) for name in given.oracle or _READERS]
         for oracle in oracles:
             stack.callback(oracle.close)
         usable = [each for each in oracles if each.missing() is None]
         for number in range(given.seed, given.seed + given.n):
-            case = mutation(originals, number)
-            ours = read(universe, case)
+            before, case = mutation(originals, number)
+            changed = _with(universe, case)
+            ours = read(changed, case)
             for oracle in usable:
-                if (found := judge(universe, oracle, case, ours)) is None:
+                if (found := judge(changed, oracle, case, ours)) is None:
                     continue
                 counts[f"{found.verdict.name} by {oracle.name}"] += 1
                 counts[f"refused by both, {oracle.name}"] += found.is_refused
                 if isinstance(found.verdict, Failed):
-                    lines = [*_changes(case), *found.verdict.failures]
+                    lines = [*_changes(before, case.text), *found.verdict.failures]
                     print(f"--seed {number}: {case.full_name}, {oracle.name}", *lines, sep="\n    ")
     for what, count in sorted(counts.items()):
         print(f"{count:7} {what}")

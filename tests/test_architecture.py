@@ -86,7 +86,7 @@ MAY_IMPORT["verify"] = {
 }
 MAY_IMPORT["equivalence"] = {
     *("arguments", "errors", "jobs", "names", "terminal", "vhdl"),
-    *("model", "frontend", "wire", "plan", "gateware", "export"),
+    *("model", "frontend", "wire", "plan", "export"),
 }
 MAY_IMPORT["bench"] = {
     *("arguments", "errors", "files", "jobs", "rtlil", "terminal"),
@@ -113,12 +113,12 @@ VERIFY_MAY_IMPORT = {
     "ts1": {"results", "ros2_wheels", "ros_python", "systems"},
     "ts2": {"results", "systems"},
     "ts3": {"clients", "references", "results", "simulators", "systems"},
-    "bench": {"references", "results", "systems", "ts3"},
+    "generated_benches": {"references", "results", "systems", "ts3"},
     "board": {"references", "results", "systems", "ts3"},
     "report": {"results"},
 }
 VERIFY_MAY_IMPORT["run"] = {
-    *("bench", "board", "clients", "command", "references", "report", "results"),
+    *("board", "clients", "command", "generated_benches", "report", "results"),
     *("systems", "ts1", "ts2", "ts3"),
 }
 VERIFY_MAY_IMPORT["command"] = {"board", "report", "results", "run", "systems", "ts3"}

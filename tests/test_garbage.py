@@ -12,8 +12,9 @@ from firm_hdl.garbage import search_put_off
 
 @pytest.fixture(autouse=True)
 def searches():
-    """Let Python search as it does by default; other tests search seldom."""
+    """Let Python search as it does by default, but not what other tests have left: that is much."""
     before = gc.get_threshold()
+    gc.freeze()
     gc.set_threshold(700, 10, 10)
     yield
     gc.set_threshold(*before)

@@ -11,18 +11,17 @@ from pathlib import Path
 
 from amaranth.back import rtlil
 
-from firm_hdl.bench.cycles import STATED, Converter, Cycles, Stated, count_cycles
+from firm_hdl.bench.cycles import STATED, Cycles, Stated, count_cycles
 from firm_hdl.bench.devices import DEVICES, Device
 from firm_hdl.bench.flow import PREPARATIONS, Measured, measure
 from firm_hdl.bench.results import Converted, Result, measured_from_json, measured_to_json
 from firm_hdl.bench.tools import versions
 from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.export.build import check_size, plan_of
+from firm_hdl.export.top import converter_of
 from firm_hdl.files import write_file
 from firm_hdl.frontend import open_library
-from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs import run_each
-from firm_hdl.model import Message
 
 __all__ = ["BenchTask", "measure_once", "run_tasks"]
 
@@ -91,33 +90,22 @@ def run_task(task: BenchTask) -> Result:
     try:
         library = open_library(what.distro, task.paths, task.bags, depends=task.depends)
         message = library.message(what.type)
-        check_size(plan_of(message, what.wire, what.bus_bytes, what.max_message_bytes))
+        plan = plan_of(message, what.wire, what.bus_bytes, what.max_message_bytes)
+        check_size(plan)
         if task.stated is not None:
-            cycles = count_cycles(_converter(what, message), message, task.stated)
+            converter = converter_of(message, plan, what.direction)
+            cycles = count_cycles(converter, message, task.stated)
         if task.device is not None:
-            measured = _measure(task, message)
+            measured = measure_once(
+                rtlil.convert(
+                    converter_of(message, plan, what.direction), name="top", emit_src=False
+                ),
+                DEVICES[task.device],
+                task.seeds,
+                mapping=task.mapping,
+                folder=None if task.cache is None else Path(task.cache),
+            )
             problem = measured.problem
     except (UserError, DefinitionError, ValueError) as error:
         problem = str(error)
     return Result(converter=what, cycles=cycles, measured=measured, problem=problem)
-
-
-def _measure(task: BenchTask, message: Message) -> Measured:
-    assert task.device is not None
-    return measure_once(
-        rtlil.convert(_converter(task.converter, message), name="top", emit_src=False),
-        DEVICES[task.device],
-        task.seeds,
-        mapping=task.mapping,
-        folder=None if task.cache is None else Path(task.cache),
-    )
-
-
-def _converter(what: Converted, message: Message) -> Converter:
-    component = Deserializer if what.direction == "deserializer" else Serializer
-    return component(
-        message,
-        wire=what.wire,
-        bus_bytes=what.bus_bytes,
-        max_message_bytes=what.max_message_bytes,
-    )

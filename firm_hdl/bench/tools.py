@@ -7,7 +7,8 @@ from pathlib import Path
 
 from firm_hdl.bench.devices import Device
 from firm_hdl.errors import UserError
-from firm_hdl.jobs import ProgramMissingError, ToolError, made_by, programs, run_tool
+from firm_hdl.jobs import ToolError, made_by, programs, run_tool
+from firm_hdl.jobs.programs import errors_in
 
 __all__ = ["BenchError", "Tool", "find_nextpnr", "find_yosys", "versions", "written"]
 
@@ -40,15 +41,7 @@ class Tool(programs.Program):
             return run_tool([*self.command, "-l", log.name, *arguments], folder, timeout=TIMEOUT)
         except ToolError as error:
             output = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
-            reason = _error_in(output) or _error_in(str(error), lines=2)
-            raise BenchError(f"{self.title} failed: {reason}") from None
-
-
-def _error_in(output: str, lines: int = 0) -> str:
-    """Return the lines of an output that report errors, or else the last `lines` lines."""
-    all_lines = [line.strip() for line in output.splitlines() if line.strip()]
-    errors = [line for line in all_lines if line.startswith("ERROR")]
-    return " ".join(errors[:2] or (all_lines[-lines:] if lines else []))
+            raise BenchError(f"{self.title} failed: {errors_in(output, str(error))}") from None
 
 
 def written(tool: Tool, file: Path) -> str:
@@ -76,7 +69,7 @@ def find_yosys() -> Tool:
     try:
         return _tool(programs.find_yosys(f": {PIP}", is_measured=True))
     except ToolError as error:
-        raise BenchError(f"Yosys failed: {_error_in(str(error), lines=2)}") from None
+        raise BenchError(f"Yosys failed: {errors_in('', str(error))}") from None
 
 
 @cache
@@ -89,16 +82,10 @@ def find_nextpnr(package: str, program: str, *, is_run: bool = True) -> Tool:
 
     Raises `ProgramMissingError`. Raises `BenchError` if the program is installed and does not run.
     """
-    version = r"Version (?:nextpnr-)?(\S+?)\)"
     try:
-        found = programs.find_packaged(
-            program, package, program, "--version", version, is_run=is_run
-        )
+        return _tool(programs.find_nextpnr(package, program, f": {PIP}", is_run=is_run))
     except ToolError as error:
-        raise BenchError(f"{program} failed: {_error_in(str(error), lines=2)}") from None
-    if found is None:
-        raise ProgramMissingError(f"{program} is not installed: {PIP}")
-    return _tool(found)
+        raise BenchError(f"{program} failed: {errors_in('', str(error))}") from None
 
 
 def versions(device: Device, *, with_placer: bool = True) -> dict[str, str]:

@@ -9,7 +9,7 @@ from firm_hdl.cases.make import Case
 from firm_hdl.plan import Plan, decode
 from firm_hdl.sim.stalls import Stalls
 
-__all__ = ["DAMAGES", "broken_packets", "stalls_for"]
+__all__ = ["DAMAGES", "broken_and_good", "broken_packets", "stalls_for"]
 
 MOST_STEPS = 500
 """The most steps of a damaged packet, in addition to twice the beats of the intact one."""
@@ -20,6 +20,18 @@ def stalls_for(seed: str | float) -> Stalls:
     rng = random.Random(seed)
     probability, most = rng.choice(((0.05, 30), (0.2, 6), (0.5, 2), (0.8, 1), (0.3, 12)))
     return Stalls(probability, 1, most, seed=rng.getrandbits(32))
+
+
+def broken_and_good(
+    plan: Plan, cases: Sequence[Case], rng: random.Random, room: int | None = None
+) -> list[bytes]:
+    """Return damaged packets of a few cases, each followed by a good one.
+
+    * `room`: the size to which damaged packets are cut; `None`: they are not.
+    """
+    sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
+    broken = [packet[:room] for packet in broken_packets(plan, sample, rng)]
+    return [each for pair in zip(broken, (c.packet for c in sample), strict=True) for each in pair]
 
 
 def broken_packets(plan: Plan, cases: Sequence[Case], rng: random.Random) -> Iterator[bytes]:

@@ -140,7 +140,6 @@ def _programs() -> Iterator[_Item]:
         yield _found(group, title, enables, partial(_board_tools, family))
     loads = "loads what node build --board makes"
     yield _found(group, "openFPGALoader", loads, _loader)
-    yield _found(group, "Dask", "verify --executor dask://HOST:PORT", _dask)
 
 
 def _version_of(make: Callable[[], TextSimulator]) -> str:
@@ -166,13 +165,6 @@ def _loader() -> str:
 
 def _said(command: Sequence[str]) -> str:
     return run_tool([*command, "--version"]).strip().partition("\n")[0]
-
-
-def _dask() -> str:
-    try:
-        return metadata.version("distributed")
-    except metadata.PackageNotFoundError:
-        raise UserError("pip install 'firm-hdl[distributed]'") from None
 
 
 def _graphs() -> Iterator[_Item]:

@@ -265,10 +265,16 @@ def _act(args: argparse.Namespace, description: Description) -> None:
         return
     if args.action == "build":
         from firm_hdl.node.bitstream import read_board
+        from firm_hdl.node.bitstream.top import board_top
         from firm_hdl.node.build import build_node
+        from firm_hdl.node.node import Node
+        from firm_hdl.node.top import node_ports
 
-        # What is wrong with it is found at once.
+        # What is wrong with it is found before anything is written.
         board = None if args.target is None else read_board(args.target)
+        if board is not None:
+            ports = [asdict(port) for port in node_ports(Node(description))]
+            board_top(description, ports, "", board)
         options: dict[str, Any] = {
             "stimuli": _stimuli,
             "datasheet": args.datasheet,

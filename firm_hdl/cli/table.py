@@ -92,10 +92,14 @@ COMMANDS: dict[str, Command] = {
         ),
     ),
     "board": Command(
-        help="write a project that puts a node beside the processor of a Kria or of a PYNQ-Z2",
+        help="write a project: a node beside the processor of a Kria or PYNQ-Z2, or a SoC of LiteX",
         module="cli.boards",
         has_origins=False,
-        examples=("firm-hdl board init kria", "firm-hdl board init pynq node.yaml --out my_board"),
+        examples=(
+            "firm-hdl board init kria",
+            "firm-hdl board init pynq node.yaml --out my_board",
+            "firm-hdl board init litex my_msgs/msg/Spot --path src",
+        ),
     ),
     "verify": Command(
         help="test converters against ROS's own libraries",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from firm_hdl.arguments import add_options
 from firm_hdl.covering.choose import FAMILIES, all_features, choose, cost
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.files import read_file, write_file
 from firm_hdl.frontend import Library, all_names, load_all, open_library
@@ -46,17 +46,17 @@ def add_cover(parser: argparse.ArgumentParser) -> None:
 def read_chosen(path: str | Path) -> list[str]:
     """Read the names of types from a file that ``--out`` wrote.
 
-    Raises `BuildError` if the file names no types or is not UTF-8 text.
+    Raises `UserError` if the file names no types or is not UTF-8 text.
     """
     try:
         lines = read_file(path, 1 << 24).decode("utf-8").splitlines()
     except UnicodeDecodeError:
-        raise BuildError(f"'{path}' is not UTF-8 text") from None
+        raise UserError(f"'{path}' is not UTF-8 text") from None
     wanted = (line.strip() for line in lines if not line.startswith("#"))
     # A name that is there twice is one type.
     names = list(dict.fromkeys(name for name in wanted if name))
     if not names:
-        raise BuildError(f"'{path}' names no types")
+        raise UserError(f"'{path}' names no types")
     return names
 
 
@@ -85,7 +85,7 @@ def run_cover(given: argparse.Namespace) -> int:
         costs[message.name] = cost(plan)
         shapes.add(shape(plan))
     if not types:
-        raise BuildError("there are no types to choose from")
+        raise UserError("there are no types to choose from")
     if kept is not None:
         return _check(types, kept, given.check)
     chosen = choose(types, costs)
@@ -116,7 +116,7 @@ def _usable(library: Library, names: Iterable[str]) -> list[Message]:
 def _check(types: Mapping[str, frozenset[str]], kept: list[str], path: str) -> int:
     if unknown := [name for name in kept if name not in types]:
         names = ", ".join(unknown)
-        raise BuildError(f"'{path}' names types that are not among the given ones: {names}")
+        raise UserError(f"'{path}' names types that are not among the given ones: {names}")
     missing = _union(types.values()) - _union(types[name] for name in kept)
     for feature in sorted(missing):
         # Name the type with the fewest features: it shows the missing feature best.

@@ -16,9 +16,8 @@ from firm_hdl.equivalence.proof import DEFAULT_TIMEOUT, Proof, prove
 from firm_hdl.equivalence.tools import find_tools
 from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.export.build import check_size, plan_of
-from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.export.top import DIRECTIONS, Direction, Top, converter_of
 from firm_hdl.frontend import Library, all_names, load_all, open_library
-from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.jobs import ProgramMissingError, ToolError, run_each
 from firm_hdl.model import Message
 from firm_hdl.names.identifiers import identifier
@@ -91,10 +90,7 @@ def converter_vhdl(
     """
     plan = plan_of(message, wire, bus_bytes, max_message_bytes)
     check_size(plan)
-    core = Deserializer if direction == "deserializer" else Serializer
-    top = Top(
-        core(message, wire=plan.wire, bus_bytes=bus_bytes, max_message_bytes=max_message_bytes)
-    )
+    top = Top(converter_of(message, plan, direction))
     base = identifier(f"{identifier(message.name)}_{plan.wire}_{bus_bytes}").lower()
     name = f"{base}_{direction}_flat"
     rtlil: str = amaranth_rtlil.convert(top, name=name, emit_src=False)

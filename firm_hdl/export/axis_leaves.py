@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
 
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.remarks import remark
 from firm_hdl.names.identifiers import first_free
 
@@ -17,20 +17,17 @@ __all__ = ["AxisPort", "axis_module", "axis_ports"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AxisPort:
+class AxisPort(PlainPort):
     """A port of the module, and the port of the design inside."""
 
-    name: str
-    direction: Literal["in", "out"]
-    width: int
     inner: str  # Empty of an input that the design has not.
     inner_width: int  # At most `width`. An input ignores the bits above, and an output has 0 there.
 
 
-def axis_ports(ports: Sequence[Any], members: Mapping[str, str]) -> list[AxisPort]:
+def axis_ports(ports: Sequence[PlainPort], members: Mapping[str, str]) -> list[AxisPort]:
     """List the ports of the module.
 
-    * `ports`: ports of the design, each with `name`, `direction` and `width`.
+    * `ports`: ports of the design.
     * `members`: the ports of leaves: ``data``, ``last``, ``valid`` or ``ready``, by the name of the
       port.
     """
@@ -73,8 +70,7 @@ def axis_module(name: str, inner: str, ports: Sequence[AxisPort], header: str) -
     """
     lines = []
     for port in ports:
-        high = f" [{port.width - 1}:0]" if port.width > 1 else ""
-        lines.append(f"  {port.direction}put wire{high} {port.name}")
+        lines.append(f"  {port.direction}put wire {port.verilog_range}{port.name}")
     joined, nets = [], []
     for port in (port for port in ports if port.inner):
         actual = port.name

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 from firm_hdl.errors import UserError
 from firm_hdl.export.manifest import MANIFEST
 from firm_hdl.export.options import Options
-from firm_hdl.export.top import DIRECTIONS, Direction, Top
+from firm_hdl.export.top import DIRECTIONS, Direction, Top, converter_of
 from firm_hdl.garbage import search_put_off
-from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.model import Message
 from firm_hdl.plan import Plan
 from firm_hdl.program import (
@@ -74,8 +73,7 @@ class Converters:
 
     @search_put_off()
     def _circuit(self, direction: Direction) -> Design:
-        converter = Deserializer if direction == "deserializer" else Serializer
-        top = Top(converter(self.message, plan=self.plan))
+        top = Top(converter_of(self.message, self.plan, direction))
         return netlist_of(rtlil_of(top, name=f"{self.name}_{direction}"))
 
     def header(self, name: str, what: str) -> str:

@@ -11,9 +11,9 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
-from typing import Any, Literal
+from typing import Any
 
-from amaranth.hdl import Fragment, Shape, Value
+from amaranth.hdl import Fragment, Value
 from amaranth.hdl._xfrm import DomainCollector
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In
@@ -39,10 +39,11 @@ from firm_hdl.export.message_ports import (
     record_files,
     struct_files,
 )
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.top import AXIS_CLOCKS, Pin, PlainTop, check_input_bits
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
-from firm_hdl.gateware.signatures import MessageSignature, packet_layout
+from firm_hdl.gateware.signatures import MessageSignature, bus_bytes_of
 from firm_hdl.names.identifiers import flat_names, identifier
 from firm_hdl.plan import build_plan
 from firm_hdl.vhdl.convert import convert
@@ -56,12 +57,9 @@ _AXIS = {"data": "tdata", "count": "tkeep", "last": "tlast", "valid": "tvalid", 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComponentPort:
-    """A port of a top level."""
+class ComponentPort(PlainPort):
+    """A port of the top level of a component."""
 
-    name: str
-    direction: Literal["in", "out"]
-    width: int  # Width in bits.
     signed: bool
     member: str  # The member of the component that it belongs to, or what it is.
 
@@ -92,7 +90,7 @@ def parts_of(
         for path, member, value in component.signature.flatten(component)
     ]
     lanes = {
-        path[:-1]: _lanes(value)
+        path[:-1]: bus_bytes_of(value)
         for path, _, value in members
         if path[-1:] == ("payload",) and has_axis(path[:-1])
     }
@@ -102,18 +100,6 @@ def parts_of(
             last = _AXIS.get(inner[-1], inner[-1]) if count else inner[-1]
             mask = count if last == "tkeep" else 0
             yield _Part(inner, (*inner[:-1], last), member.flow, each, mask)
-
-
-def _lanes(payload: Any) -> int:
-    """Return the bytes of a beat of a packet stream, and 0 for any other stream."""
-    shape = payload.shape()
-    if not isinstance(shape, data.StructLayout) or "data" not in shape.members:
-        return 0
-    lanes = Shape.cast(shape.members["data"]).width // 8
-    try:
-        return lanes if shape == packet_layout(lanes) else 0
-    except ValueError:
-        return 0
 
 
 def _fields(path: Path, value: Any) -> Iterator[tuple[Path, Value]]:
@@ -279,18 +265,13 @@ def build_component(
         header = f"{name}: {type(component).__name__}\nMade by firm-hdl {firm_hdl.__version__}\n"
         netlist = rtlil.netlist_of(circuit)
         vhdl = convert(netlist, name=name, header=header)
-        records: dict[str, str] = {}
-        structs: dict[str, str] = {}
-        if messages:
-            vhdl_ports = vhdl.entities[vhdl.top].ports
-            records = record_files(
-                name, plain.ports, messages, kind="design", vhdl_ports=vhdl_ports, header=header
-            )
-            structs = struct_files(
-                name, module, plain.ports, messages, kind="design", header=header
-            )
         if vhdl.top != name:
             raise UserError(f"The VHDL of every design uses the name '{name}' itself")
+        vhdl_ports = vhdl.entities[name].ports
+        records = record_files(
+            name, plain.ports, messages, kind="design", vhdl_ports=vhdl_ports, header=header
+        )
+        structs = struct_files(name, module, plain.ports, messages, kind="design", header=header)
         owners = {"The design": vhdl.files, "its messages": records, "its structs": structs}
         if shared := shared_unit(owners):
             raise UserError(f"{shared}; give the design another name")

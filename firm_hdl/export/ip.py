@@ -24,7 +24,8 @@ import firm_hdl
 from firm_hdl.export.axis_leaves import AxisPort, axis_module
 from firm_hdl.export.backend import Converters, Output, module_name
 from firm_hdl.export.manifest import digest, to_json
-from firm_hdl.export.options import Ip as Tool
+from firm_hdl.export.options import IpTool
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.registers import register_ports
 from firm_hdl.export.templates import render
 from firm_hdl.export.top import DIRECTIONS, Direction, ports_of
@@ -95,7 +96,7 @@ class Ip:
     library: str  # Second part of the name: the distribution of the types, or `node`.
     module: str  # The outermost module.
     files: Mapping[str, str]  # Verilog by file name, the outermost module last.
-    ports: Sequence[Any]  # Each with `name`, `direction` ("in" or "out") and `width`.
+    ports: Sequence[PlainPort]
     # For people, in one line.
     title: str
     description: str
@@ -140,7 +141,7 @@ class Bus:
         return f"xilinx.com:{library}:{self.kind}"
 
 
-def buses_of(ports: Sequence[Any]) -> list[Bus]:
+def buses_of(ports: Sequence[PlainPort]) -> list[Bus]:
     """Return the buses of a design, by the names of its ports: streams, registers, clock, reset.
 
     A stream has ``NAME_tdata``, ``NAME_tvalid`` and ``NAME_tready`` at least. The clock is
@@ -169,7 +170,7 @@ def buses_of(ports: Sequence[Any]) -> list[Bus]:
     ]
 
 
-def _streams(by_name: Mapping[str, Any]) -> Iterator[Bus]:
+def _streams(by_name: Mapping[str, PlainPort]) -> Iterator[Bus]:
     for name, port in by_name.items():
         base = name.removesuffix("_tdata")
         own = {each.upper(): f"{base}_{each}" for each in _AXIS if f"{base}_{each}" in by_name}
@@ -178,7 +179,7 @@ def _streams(by_name: Mapping[str, Any]) -> Iterator[Bus]:
             yield Bus(name=base, kind="axis", mode=mode, ports=own)
 
 
-def ip_files(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
+def ip_files(tool: IpTool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
     """Return the files of a folder's IP, by paths in it.
 
     * `name`: name of the folder, with which names of designs begin.
@@ -193,7 +194,7 @@ def ip_files(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, str]:
     }
 
 
-def _pins(ip: Ip, buses: Sequence[Bus]) -> list[Any]:
+def _pins(ip: Ip, buses: Sequence[Bus]) -> list[PlainPort]:
     """Return the ports that are in no interface."""
     inside = {port for bus in buses for port in bus.ports.values()}
     return [port for port in ip.ports if port.name not in inside]
@@ -281,7 +282,7 @@ def _quartus_files(ip: Ip) -> dict[str, str]:
     return {f"{ip.name}_hw.tcl": script, f"{ip.name}.qip": listed, **ip.files}
 
 
-def _for_tool(tool: Tool, ip: Ip) -> Ip:
+def _for_tool(tool: IpTool, ip: Ip) -> Ip:
     """For Quartus, add AWPROT and ARPROT to AXI4-Lite: they are required (IHI 0022, Table B1-1)."""
     if tool != "quartus" or ip.table is None:
         return ip
@@ -361,7 +362,7 @@ def write(converters: Converters, texts: Mapping[str, str]) -> Output:
 
     for way in DIRECTIONS:
         modules = [module_name(converters.name, way)]
-        ports: Sequence[Any] = ports_of(plan, way)
+        ports: Sequence[PlainPort] = ports_of(plan, way)
         if converters.options.leaf_ports == "axis":
             modules.append(module_name(converters.name, way, "axis"))
             ports = converter_axis_ports(plan, way)
@@ -405,7 +406,7 @@ _WHAT: dict[Direction, str] = {
 }
 
 
-def _tied(plan: Plan, ports: Sequence[Any], way: Direction) -> dict[str, int]:
+def _tied(plan: Plan, ports: Sequence[PlainPort], way: Direction) -> dict[str, int]:
     """Return what takes leaves that are not connected, or what makes their fields 0 or empty."""
     inner = {port.name: port for port in ports_of(plan, way) if port.leaf is not None}
     found = {}
@@ -421,7 +422,7 @@ def _tied(plan: Plan, ports: Sequence[Any], way: Direction) -> dict[str, int]:
     return found
 
 
-def ip_facts(tool: Tool, name: str, designs: Sequence[Ip]) -> dict[str, Any]:
+def ip_facts(tool: IpTool, name: str, designs: Sequence[Ip]) -> dict[str, Any]:
     """Return the manifest's entry `ip`."""
     designs = [_for_tool(tool, ip) for ip in designs]
     component = {

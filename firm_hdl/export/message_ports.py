@@ -143,8 +143,11 @@ def record_files(
     * `vhdl_ports`: names of its ports, by those of the netlist.
     * `header`: lines of a comment at the head of the entity's file.
 
-    Returns: texts by file name, in compile order; they compile after the design.
+    Returns: texts by file name, in compile order; they compile after the design. None without
+    messages.
     """
+    if not messages:
+        return {}
     files: dict[str, str] = {}
     # An actual is the port of the same name, unless it is a part of a record.
     actuals = {port.name: port.name for port in ports}
@@ -176,17 +179,21 @@ def record_files(
 
 
 def _line(port: ComponentPort) -> Line:
-    kind = "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
-    return port.name, f"{port.direction:3} {kind}", f"{port.member}."
+    return Line(port.name, port.direction, port.vhdl_type, f"{port.member}.")
 
 
 def _lines(port: RecordPort, package: str) -> list[Line]:
     root = port.tree().root
-    forwards, backwards = ("out", "in ") if port.direction == "deserializer" else ("in ", "out")
+    forwards, backwards = ("out", "in") if port.direction == "deserializer" else ("in", "out")
     # Two types of a design may have the same name, in packages of their own.
     return [
-        (port.name, f"{forwards} {package}.{root.type}", f"Data and valid of {port.message.name}."),
-        (port.ready, f"{backwards} {package}.{root.ready_type}", "Ready of the fields."),
+        Line(
+            port.name,
+            forwards,
+            f"{package}.{root.type}",
+            f"Data and valid of {port.message.name}.",
+        ),
+        Line(port.ready, backwards, f"{package}.{root.ready_type}", "Ready of the fields."),
     ]
 
 
@@ -205,8 +212,11 @@ def struct_files(
     * `kind`: what the design is: ``"node"``.
     * `header`: lines of a comment at the head of the module's file.
 
-    Returns: texts by file name, in compile order; then ``files.f`` and waivers of Verilator.
+    Returns: texts by file name, in compile order; then ``files.f`` and waivers of Verilator. None
+    without messages.
     """
+    if not messages:
+        return {}
     files: dict[str, str] = {}
     for each in messages:
         files |= struct_packages(each.plan, each.tree(WORDS))
@@ -232,7 +242,7 @@ def _ports(ports: Sequence[ComponentPort], messages: Sequence[RecordPort]) -> It
     ways = {"in": "input", "out": "output"}
     lines: list[tuple[str, str, str, str]] = []
     for port in other_ports(ports, messages):
-        kind = "logic" if port.width == 1 else f"logic [{port.width - 1}:0]"
+        kind = f"logic {port.verilog_range}".rstrip()
         lines.append((ways[port.direction], kind, port.name, f"{port.member}."))
     for each in messages:
         root, own = each.tree(WORDS).root, package_name(each.tree(WORDS).package.name)

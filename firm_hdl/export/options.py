@@ -8,7 +8,17 @@ from typing import Any, Literal, TypeAlias, get_args
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
 from firm_hdl.wire import Wire
 
-__all__ = ["EXTRAS", "IPS", "LEAF_PORTS", "PORTS", "Extra", "Ip", "LeafPorts", "Options", "Ports"]
+__all__ = [
+    "EXTRAS",
+    "IPS",
+    "LEAF_PORTS",
+    "PORTS",
+    "Extra",
+    "IpTool",
+    "LeafPorts",
+    "Options",
+    "Ports",
+]
 
 Ports: TypeAlias = Literal["records", "flat"]
 PORTS: tuple[Ports, ...] = get_args(Ports)
@@ -16,8 +26,8 @@ PORTS: tuple[Ports, ...] = get_args(Ports)
 LeafPorts: TypeAlias = Literal["plain", "axis"]
 LEAF_PORTS: tuple[LeafPorts, ...] = get_args(LeafPorts)
 
-Ip: TypeAlias = Literal["vivado", "quartus", "litex"]
-IPS: tuple[Ip, ...] = get_args(Ip)
+IpTool: TypeAlias = Literal["vivado", "quartus", "litex"]
+IPS: tuple[IpTool, ...] = get_args(IpTool)
 
 Extra: TypeAlias = Literal["systemverilog", "tools", "documents"]
 EXTRAS: tuple[Extra, ...] = get_args(Extra)
@@ -42,7 +52,7 @@ class Options:
     extras: frozenset[Extra] = frozenset()  # Some of `EXTRAS`.
     registers: bool = False  # Also write converters with registers on AXI4-Lite.
     leaf_ports: LeafPorts = "plain"  # "axis": also write modules whose leaves are AXI4-Stream.
-    ip: Ip | None = None  # Also write IP for a tool, with these leaves.
+    ip: IpTool | None = None  # Also write IP for a tool, with these leaves.
 
     @property
     def facts(self) -> dict[str, Any]:

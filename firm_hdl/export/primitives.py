@@ -29,13 +29,8 @@ __all__ = [
 TYPES_NAME = "firm_hdl_types_pkg"
 """Name of the VHDL package that all messages share."""
 
-_PRIMITIVES = [
-    PRIMITIVES["ros2"][name]
-    for name in (
-        *("bool", "float32", "float64"),
-        *(f"{sign}int{bits}" for bits in (8, 16, 32, 64) for sign in ("", "u")),
-    )
-]
+# `byte` and `char` become integers.
+_PRIMITIVES = [each for each in PRIMITIVES["ros2"].values() if each.name not in ("byte", "char")]
 PRIMITIVE_BITS = {each.name: each.bits for each in _PRIMITIVES}
 PRIMITIVE_BYTES = {each.name: each.bytes for each in _PRIMITIVES}
 """Size of each primitive on the wire, in bytes."""

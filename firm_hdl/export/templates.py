@@ -12,7 +12,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-__all__ = ["render", "text_of"]
+__all__ = ["render", "templates", "text_of"]
 
 _FOLDER = Path(__file__).parent
 
@@ -28,13 +28,14 @@ def render(template: str, **values: Any) -> str:
     * `template`: path in this package, without ``.j2``, such as ``"vhdl/bench.vhd"``.
     * `**values`: the variables of the template.
     """
-    return _environment().get_template(f"{template}.j2").render(values)
+    return templates(_FOLDER).get_template(f"{template}.j2").render(values)
 
 
 @cache
-def _environment() -> Environment:
+def templates(folder: Path) -> Environment:
+    """Return the templates in a folder; they may extend those of this package."""
     return Environment(
-        loader=FileSystemLoader(_FOLDER),
+        loader=FileSystemLoader([folder, _FOLDER]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

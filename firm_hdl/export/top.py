@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from amaranth.hdl import ClockDomain, Module, Shape, Signal, Value
 from amaranth.lib import data
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.errors import UserError
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.axi_stream import count_of_keep, keep_of_count
 from firm_hdl.gateware.component import Component
@@ -37,6 +38,7 @@ __all__ = [
     "Top",
     "add_domain",
     "check_input_bits",
+    "converter_of",
     "field_of",
     "leaf_members",
     "leaf_names",
@@ -56,12 +58,9 @@ _RESERVED = ("s_axis", "m_axis", "m_axis_status")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Port:
-    """A port of a top level."""
+class Port(PlainPort):
+    """A port of a converter's top level."""
 
-    name: str
-    direction: Literal["in", "out"]
-    width: int  # Width in bits.
     meaning: str  # Description for people.
     signed: bool = False
     leaf: int | None = None  # Index of the leaf that the port belongs to; `None` for other ports.
@@ -192,7 +191,7 @@ class Pin:
     is_count: bool = False  # The port is `tkeep`, and `value` is the number of bytes.
 
 
-def check_input_bits(what: str, ports: Iterable[Any]) -> None:
+def check_input_bits(what: str, ports: Iterable[PlainPort]) -> None:
     """Refuse a design with more input bits than Amaranth elaborates.
 
     Raises `UserError`.
@@ -249,6 +248,12 @@ class PlainTop(Component):
             else:
                 m.d.comb += pin.value.eq(value)
         return m
+
+
+def converter_of(message: Message, plan: Plan, direction: Direction) -> Deserializer | Serializer:
+    """Return a converter with a plan."""
+    core = Deserializer if direction == "deserializer" else Serializer
+    return core(message, plan=plan)
 
 
 class Top(PlainTop):

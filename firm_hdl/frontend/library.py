@@ -295,6 +295,8 @@ class Library:
         name = names[0]
         message = unknown_type(self._sources, names)
         similar = similar_types(self._sources, name.package, name.name)
+        if message.endswith("is not found") and not similar:
+            message += "; --path names a folder that has it (in a node: 'paths')"
         return DefinitionError.of(did_you_mean(message, self._spell(similar)))
 
     def _spell(self, types: list[tuple[str, Kind, str]]) -> list[str]:

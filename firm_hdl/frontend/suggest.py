@@ -54,7 +54,7 @@ def unknown_type(sources: Sources, names: Sequence[TypeName]) -> str:
     if package not in sources.types and package in _NOT_EMBEDDED:
         message += (
             "; this ROS package does not come with firm-hdl: name a folder that has it with "
-            "--path, or source the setup file of an installation that does"
+            "--path (in a node: 'paths'), or source the setup file of an installation that does"
         )
     return message + _unread(sources, place)
 

@@ -33,6 +33,7 @@ __all__ = [
     "PartSignature",
     "Status",
     "StatusSignature",
+    "bus_bytes_of",
     "leaf_shape",
     "leaf_streams",
     "packet_layout",
@@ -119,6 +120,22 @@ def packet_layout(bus_bytes: int) -> data.StructLayout:
     return data.StructLayout(
         {"data": data.ArrayLayout(8, bus_bytes), "count": range(bus_bytes + 1), "last": 1}
     )
+
+
+def bus_bytes_of(payload: Any) -> int:
+    """Return the bytes of a beat, given the payload of a packet stream; 0 for any other payload.
+
+    The number of bytes may be one that no converter has.
+    """
+    shape = payload.shape()
+    if not isinstance(shape, data.StructLayout) or list(shape.members) != ["data", "count", "last"]:
+        return 0
+    lanes = shape.members["data"]
+    if not isinstance(lanes, data.ArrayLayout) or Shape.cast(lanes.elem_shape).width != 8:
+        return 0
+    counts = Shape.cast(shape.members["count"]).width
+    fits = counts == lanes.length.bit_length() and Shape.cast(shape.members["last"]).width == 1
+    return lanes.length if fits else 0
 
 
 def PacketSignature(bus_bytes: int) -> stream.Signature:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
+from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.jobs.processes import ToolError, TooSlowError, made_by, run_tool, worker_pool
 from firm_hdl.jobs.programs import ProgramMissingError
 
 __all__ = [
-    "PROCESSES",
     "ExecutorError",
     "ProgramMissingError",
     "TooSlowError",

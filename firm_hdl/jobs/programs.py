@@ -25,14 +25,18 @@ from firm_hdl.jobs.processes import ToolError, run_tool
 __all__ = [
     "Program",
     "ProgramMissingError",
+    "errors_in",
     "find_compiler",
     "find_ghdl",
+    "find_nextpnr",
     "find_package",
     "find_packaged",
     "find_program",
     "find_verilator",
     "find_yosys",
     "python_command",
+    "verilator_headers",
+    "verilator_sources",
     "version_of",
     "which",
     "yowasp_command",
@@ -61,6 +65,13 @@ class Program:
     title: str  # Name in messages.
     command: tuple[str, ...]  # First words of a command line.
     version: str
+
+
+def errors_in(log: str, output: str) -> str:
+    """Return the first lines with errors in a log or in an output, or the last of the output."""
+    lines = [line.strip() for line in f"{log}\n{output}".splitlines()]
+    errors = [line for line in lines if line.startswith("ERROR")]
+    return " ".join(errors[:2] or [line.strip() for line in output.splitlines()[-2:]])
 
 
 def which(name: str) -> str | None:
@@ -179,6 +190,31 @@ def find_verilator(user: str) -> tuple[str, ...]:
         ) from None
 
 
+def verilator_headers(verilator: Sequence[str]) -> Path:
+    """Return the folder of Verilator's runtime.
+
+    Raises `ToolError`.
+    """
+    if not (root := run_tool([*verilator, "--getenv", "VERILATOR_ROOT"]).strip()):
+        raise ToolError("Verilator did not say where its runtime is")
+    return Path(root, "include")
+
+
+def verilator_sources(verilator: Sequence[str], makefile: str) -> list[Path]:
+    """Return the sources of Verilator's runtime that a model needs; versions differ.
+
+    * `makefile`: the text of the model's ``PREFIX_classes.mk``.
+
+    Raises `ToolError`.
+    """
+    found = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)
+    parts = found[1].replace("\\", " ").split() if found else []
+    if not parts:
+        raise ToolError("Verilator did not say which parts of its runtime a model needs")
+    headers = verilator_headers(verilator)
+    return [headers / f"{part}.cpp" for part in parts]
+
+
 def version_of(path: str, option: str = "--version") -> str:
     """Return what a program says of its version: three lines, or why it says nothing."""
     try:
@@ -214,6 +250,20 @@ def find_packaged(
     command = yowasp_command(package, program)
     packaged = {package: command} if command else {}
     return _first_that_runs(title, packaged, program, option, version, is_run=is_run)
+
+
+def find_nextpnr(package: str, program: str, install: str, *, is_run: bool = True) -> Program:
+    """Find a nextpnr; `package`, `program` and `is_run` as for `find_packaged`.
+
+    * `install`: how to install it, for the message.
+
+    Raises `ProgramMissingError`. Raises `ToolError` if the package is installed and does not run.
+    """
+    version = r"Version (?:nextpnr-)?(\S+?)\)"
+    found = find_packaged(program, package, program, "--version", version, is_run=is_run)
+    if found is None:
+        raise ProgramMissingError(f"{program} is not installed{install}")
+    return found
 
 
 def yowasp_command(package: str, program: str) -> tuple[str, ...] | None:

@@ -35,7 +35,8 @@ from firm_hdl.export.message_ports import (
     record_files,
     struct_files,
 )
-from firm_hdl.export.options import Ip as Tool
+from firm_hdl.export.options import IpTool
+from firm_hdl.export.ports import PlainPort
 from firm_hdl.export.verilog.backend import waivers
 from firm_hdl.garbage import search_put_off
 from firm_hdl.names.identifiers import identifier
@@ -87,7 +88,7 @@ def build_node(
     force: bool = False,
     stimuli: Stimuli | None = None,
     datasheet: bool = False,
-    ip: Tool | None = None,
+    ip: IpTool | None = None,
 ) -> BuiltDesign:
     """Write the design of a node into a folder of its own, ``out/NAME``.
 
@@ -173,7 +174,7 @@ def _files(
     own: AcceleratorFiles,
     *,
     placed: Mapping[str, Any] | None,
-    ip: Tool | None,
+    ip: IpTool | None,
 ) -> dict[str, str]:
     """Write the design and its benches in each language."""
     header = (
@@ -184,13 +185,8 @@ def _files(
     netlist = rtlil.netlist_of(circuit)
     node = convert(netlist, name=name, header=header)
     vhdl_ports = node.entities[name].ports
-    records: dict[str, str] = {}
-    structs: dict[str, str] = {}
-    if messages:
-        records = record_files(
-            name, ports, messages, kind="node", vhdl_ports=vhdl_ports, header=header
-        )
-        structs = struct_files(name, module, ports, messages, kind="node", header=header)
+    records = record_files(name, ports, messages, kind="node", vhdl_ports=vhdl_ports, header=header)
+    structs = struct_files(name, module, ports, messages, kind="node", header=header)
     is_vhdl = own.language == "vhdl"
     inside = {file.removeprefix("vhdl/"): text for file, text in own.texts.items()}
     vhdl = {**(inside if is_vhdl else {}), **node.files, **records}
@@ -302,7 +298,7 @@ def _ip(
     """Return the node as IP. Messages that come out of it are AXI4-Stream."""
     module = verilog_module(name)
     members = {name: port.member for each in messages for name, port in each.ports.items()}
-    shown: Sequence[Any] = ports
+    shown: Sequence[PlainPort] = ports
     if members:
         inner, module = module, f"{name}_axis_verilog"
         shown = axis_ports(ports, members)

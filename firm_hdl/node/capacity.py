@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from firm_hdl.metrics import metrics_of
 from firm_hdl.node.bytestream import CRC_BYTES
-from firm_hdl.node.description import Description, Direction, Store
+from firm_hdl.node.description import Description, Store, Way
 from firm_hdl.node.frame import HEADER_BYTES
+from firm_hdl.node.rtps.templates import Job, templates_of
 
 __all__ = [
     "assembly_bytes",
@@ -19,14 +20,13 @@ __all__ = [
     "size_problems",
 ]
 
-_WAYS: dict[Direction, str] = {"in": "to the node", "out": "from the node"}
+_WAYS: dict[Way, str] = {"in": "to the node", "out": "from the node"}
 _MOST_NAMED = 8
 _GIGABIT_BYTES_PER_SECOND = 125e6
 _MII_BYTES_PER_SECOND = 12.5e6
 _MOST_FRAGMENTS = 1 << 16
-# Bytes of an RTPS datagram besides the payload: of a reply with a heartbeat and padding; of what
-# peers send.
-_RTPS_SENT, _RTPS_RECEIVED = 167, 256
+# Bytes of an RTPS datagram of a peer besides the payload, at most.
+_RTPS_RECEIVED = 256
 # What a datagram has besides a sample, at most. With 1,472 bytes, peers cut samples of more than
 # 1,280 bytes: first those of firm-hdl, then Cyclone DDS, at 1,344.
 _RTPS_HEADS = 192
@@ -48,7 +48,7 @@ def assembly_bytes(datagram_bytes: int, largest: int) -> int:
     return 1 << (largest - 1).bit_length() if is_cut else 0
 
 
-def most_bytes(description: Description, direction: Direction, store: Store) -> int:
+def most_bytes(description: Description, direction: Way, store: Store) -> int:
     """Return the size of the largest message that has room in all memories on its way."""
     link, most = description.link, store.memory_bytes
     if link.kind == "rtps":
@@ -64,8 +64,10 @@ def bytes_on_link(description: Description, packet_bytes: int) -> int:
     """Return how many bytes a message takes on the link, at least."""
     link = description.link
     if link.kind == "rtps":
-        room = link.datagram_bytes - _RTPS_SENT
-        return packet_bytes + _RTPS_SENT * max(1, -(-packet_bytes // max(1, room)))
+        # A reply with a heartbeat, and up to three bytes of padding.
+        heads = templates_of(description).every[Job.REPLY].size + 3
+        room = max(1, link.datagram_bytes - heads)
+        return packet_bytes + heads * max(1, -(-packet_bytes // room))
     if link.kind == "uart":
         # A byte of COBS, and a byte 0 before and after.
         return HEADER_BYTES + packet_bytes + CRC_BYTES + 3

@@ -12,7 +12,7 @@ from enum import IntEnum
 from typing import Any, Literal
 
 from firm_hdl.ethernet.drops import DROPS
-from firm_hdl.node.description import SERVICE_PARTS, Description, Link
+from firm_hdl.node.description import Description, Link
 
 __all__ = [
     "CONTROL_BYTES",
@@ -224,9 +224,7 @@ def counter_path(description: Description, register: Register) -> tuple[str, str
     if not register.topic:
         return register.part, register.name
     topic = description.topics[register.topic - 1]
-    part: str = topic.kind
-    if topic.kind == "serve":
-        part = SERVICE_PARTS["in" if register.part == "in" else "out"]
+    part = topic.part("in" if register.part == "in" else "out")
     return f"{part}_{topic.port}", register.name
 
 

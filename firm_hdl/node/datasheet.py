@@ -17,7 +17,7 @@ from firm_hdl.export.datasheet.rows import CHARACTER_WIDTH, clipped
 from firm_hdl.export.datasheet.steps import plan_figure
 from firm_hdl.export.datasheet.waves import waves_of
 from firm_hdl.export.facts import definitions_of
-from firm_hdl.export.vhdl.wrapper import instance
+from firm_hdl.export.vhdl.wrapper import instance, plain_lines
 from firm_hdl.node.description import Description, Store
 from firm_hdl.node.frame import HEADER
 from firm_hdl.node.summary import (
@@ -87,7 +87,7 @@ def node_datasheet(
         messages=list(_messages(description)),
         ports=ports,
         instances={
-            "VHDL": instance("the_node", name, _lines(ports, vhdl_ports), ()),
+            "VHDL": instance("the_node", name, plain_lines(ports, vhdl_ports), ()),
             "Verilog and SystemVerilog": _verilog(ports, module),
             "Amaranth": _AMARANTH,
         },
@@ -231,20 +231,9 @@ def _messages(description: Description) -> Iterator[dict[str, Any]]:
         }
 
 
-def _lines(ports: Sequence[ComponentPort], names: Mapping[str, str]) -> list[tuple[str, str, str]]:
-    kinds = (
-        "std_logic" if port.width == 1 else f"std_logic_vector({port.width - 1} downto 0)"
-        for port in ports
-    )
-    return [
-        (names.get(port.name, port.name), f"{port.direction:3} {kind}", port.member)
-        for port, kind in zip(ports, kinds, strict=True)
-    ]
-
-
 def _verilog(ports: Sequence[ComponentPort], module: str) -> str:
     wires = (
-        f"wire {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};\n"
+        f"wire {port.verilog_range}{port.name};\n"
         for port in ports
         if port.name not in ("aclk", "aresetn")
     )

@@ -25,7 +25,6 @@ __all__ = [
     "REGISTER_BUSES",
     "SERVICE_PARTS",
     "Description",
-    "Direction",
     "EthernetKind",
     "Hdl",
     "IoPins",
@@ -34,12 +33,13 @@ __all__ = [
     "Store",
     "Topic",
     "TopicQos",
+    "Way",
 ]
 
 Kind: TypeAlias = Literal["subscribe", "publish", "serve"]
 """What the node does with a topic; `serve` is a service, of which the node is the server."""
 
-Direction: TypeAlias = Literal["in", "out"]
+Way: TypeAlias = Literal["in", "out"]
 """The way of packets: `in` from the host to the node, `out` from the node to the host."""
 
 Language: TypeAlias = Literal["vhdl", "verilog", "systemverilog"]
@@ -59,8 +59,8 @@ RegisterBus: TypeAlias = Literal["axi4lite", "csr"]
 REGISTER_BUSES: tuple[RegisterBus, ...] = ("axi4lite", "csr")
 """Buses on which a node has registers: AXI4-Lite, or the CSR bus of amaranth-soc."""
 
-SERVICE_PARTS: dict[Direction, str] = {"in": "request", "out": "response"}
-"""What a service has in each direction."""
+SERVICE_PARTS: dict[Way, str] = {"in": "request", "out": "response"}
+"""What a service has in each way."""
 
 CONTROL_TOPIC = 0
 """The id of control messages. Topics are numbered from 1 on."""
@@ -132,7 +132,7 @@ class Topic:
         The full name of the type.
     definition_hash : str
         SHA-256 of the definitions, as `Library.definition_hash` gives it.
-    stores : tuple of pairs of Direction and Store
+    stores : tuple of pairs of Way and Store
         `in` of a subscription, `out` of a publication, both of a service.
     qos : TopicQos
     rate_hz : float or None
@@ -148,18 +148,27 @@ class Topic:
     port: str
     type: str
     definition_hash: str
-    stores: tuple[tuple[Direction, Store], ...]
+    stores: tuple[tuple[Way, Store], ...]
     qos: TopicQos = TopicQos()
     rate_hz: float | None = None
     span: Span | None = field(default=None, compare=False, repr=False)
 
-    def store(self, direction: Direction) -> Store:
-        """Return the packets of a direction, in which the topic has some."""
-        return dict(self.stores)[direction]
+    def store(self, way: Way) -> Store:
+        """Return the packets of a way, in which the topic has some."""
+        return dict(self.stores)[way]
 
-    def has(self, direction: Direction) -> bool:
-        """Whether the topic has packets in a direction."""
-        return direction in dict(self.stores)
+    def has(self, way: Way) -> bool:
+        """Whether the topic has packets in a way."""
+        return way in dict(self.stores)
+
+    def part(self, way: Way) -> str:
+        """Return what the topic is in a way, such as ``subscribe`` or ``request``."""
+        return SERVICE_PARTS[way] if self.kind == "serve" else self.kind
+
+    def path(self, way: Way) -> tuple[str, ...]:
+        """Return the member of an accelerator with the message of a way."""
+        own = (self.kind, self.port)
+        return (*own, SERVICE_PARTS[way]) if self.kind == "serve" else own
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -362,10 +371,10 @@ class Description:
             max_message_bytes=store.max_message_bytes,
         )
 
-    def _stores(self, direction: Direction) -> Iterator[tuple[Topic, Store]]:
+    def _stores(self, way: Way) -> Iterator[tuple[Topic, Store]]:
         for topic in self.topics:
-            if topic.has(direction):
-                yield topic, topic.store(direction)
+            if topic.has(way):
+                yield topic, topic.store(way)
 
     @property
     def fingerprint(self) -> int:

@@ -90,6 +90,15 @@ class Node(Component):
         super().__init__(members)
 
     def elaborate(self, platform: object) -> Module:
+        # Streams, and their signatures; a request has a tag, which goes back with its response:
+        #
+        #   link            core                 converters                accelerator
+        #    | LinkSignature |   PacketSignature     |   MessageSignature       |
+        #    |-------------->|---------------------->|------------------------->|  subscribe
+        #    |               |   RequestSignature    |                          |
+        #    |-------------->|---------------------->|------------------------->|  serve: request
+        #    |               |   ResponseSignature   |                          |
+        #    |<--------------|<----------------------|<-------------------------|  publish, response
         m = Module()
         description = self.description
         m.submodules.link = link = link_of(description)

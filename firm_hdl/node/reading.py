@@ -25,7 +25,6 @@ from firm_hdl.node.description import (
     NODE_BUS_BYTES,
     REGISTER_BUSES,
     Description,
-    Direction,
     Hdl,
     IoPins,
     Kind,
@@ -33,6 +32,7 @@ from firm_hdl.node.description import (
     Store,
     Topic,
     TopicQos,
+    Way,
 )
 from firm_hdl.node.link_options import read_link, with_memory
 from firm_hdl.node.marked_yaml import Entry, Marked, parse
@@ -577,7 +577,7 @@ class TopicReader:
         return TopicQos(**given)
 
     def _store(
-        self, message: Message, direction: Direction, kind: Kind, options: dict[str, Entry]
+        self, message: Message, direction: Way, kind: Kind, options: dict[str, Entry]
     ) -> Store | None:
         figures = self._metrics_of(message)
         least, most = figures.min_bytes or 0, figures.max_bytes
@@ -611,7 +611,7 @@ class TopicReader:
             when_full=self._when_full(options.get("when_full"), kind, direction),
         )
 
-    def _when_full(self, entry: Entry | None, kind: Kind, direction: Direction) -> Any:
+    def _when_full(self, entry: Entry | None, kind: Kind, direction: Way) -> Any:
         # A subscription that waits would hold the packets of all others, which come by one router.
         usual = "drop" if direction == "in" else "wait"
         if entry is None:
@@ -628,7 +628,7 @@ def in_keys(problem: Diagnostic) -> Diagnostic:
     return replace(problem, message=message)
 
 
-def _directions(kind: Kind, interface: Interface) -> tuple[tuple[Direction, Message], ...]:
+def _directions(kind: Kind, interface: Interface) -> tuple[tuple[Way, Message], ...]:
     """List the messages of a topic, with the way that they go."""
     if isinstance(interface, Service):
         return ("in", interface.request), ("out", interface.response)

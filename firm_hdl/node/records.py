@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from firm_hdl.export.message_ports import FoundMessage
-from firm_hdl.node.description import SERVICE_PARTS, Description
+from firm_hdl.node.description import Description
 from firm_hdl.plan import Direction
 
 __all__ = ["found_messages"]
@@ -18,8 +18,5 @@ def found_messages(description: Description) -> Iterator[FoundMessage]:
     """Yield the messages at the top level of a node without accelerator."""
     for topic in description.topics:
         for way, store in topic.stores:
-            path: tuple[str, ...] = (topic.kind, topic.port)
-            if topic.kind == "serve":
-                path = (*path, SERVICE_PARTS[way])
             direction: Direction = "deserializer" if way == "in" else "serializer"
-            yield FoundMessage(path, direction, store.message, description.plan(store))
+            yield FoundMessage(topic.path(way), direction, store.message, description.plan(store))

@@ -17,14 +17,15 @@ from firm_hdl.node.control import IDENTITY, registers
 from firm_hdl.node.description import (
     SERVICE_PARTS,
     Description,
-    Direction,
     Link,
     Store,
     Topic,
+    Way,
 )
 from firm_hdl.node.frame import HEADER, HEADER_BYTES, VERSION
 from firm_hdl.node.link_options import LINK_OPTIONS
 from firm_hdl.node.rtps.endpoints import ports_of_link
+from firm_hdl.node.rtps.templates import Job, templates_of
 from firm_hdl.timing import Cost, timing
 
 __all__ = [
@@ -131,7 +132,7 @@ def _topic(topic: Topic, figures_of: Callable[[Store], _Figures]) -> dict[str, A
     }
 
 
-def _store(topic: Topic, direction: Direction, store: Store, figures: _Figures) -> dict[str, Any]:
+def _store(topic: Topic, direction: Way, store: Store, figures: _Figures) -> dict[str, Any]:
     """Return the figures of the packets of a topic in one direction."""
     metrics, hardest, estimates = figures
     estimate = estimates.get("deserializer" if direction == "in" else "serializer")
@@ -154,7 +155,7 @@ def summary(description: Description) -> str:
     """Describe a node on a page of text, as ``firm-hdl node info`` prints it."""
     facts = facts_of(description)
     warnings = [f"warning: {line}" for line in warnings_of(description, facts)]
-    lines = [*_head(description, facts), "", *_table(facts), "", *_totals(facts)]
+    lines = [*_head(description, facts), "", *_table(facts), "", *_totals(description, facts)]
     return "\n".join([*lines, *([""] if warnings else []), *warnings])
 
 
@@ -207,7 +208,7 @@ def _rows(facts: dict[str, Any]) -> Iterator[list[str]]:
             ]
 
 
-def _totals(facts: dict[str, Any]) -> Iterator[str]:
+def _totals(description: Description, facts: dict[str, Any]) -> Iterator[str]:
     """Yield sums: memory, area, and bytes on the link."""
     yield f"memory for packets: {memory_bytes(facts)} bytes"
     area = area_of(facts)
@@ -224,7 +225,11 @@ def _totals(facts: dict[str, Any]) -> Iterator[str]:
     if needed := clock_needed(facts):
         yield f"clock for all stated rates on one link: {needed / 1e6:.3g} MHz"
     if facts["link"]["kind"] == "rtps":
-        yield "a message costs 92 bytes of headers per reader, and a response 152"
+        every = templates_of(description).every
+        yield (
+            f"a message costs {every[Job.SAMPLE].size} bytes of headers per reader, and a response "
+            f"{every[Job.REPLY].size}"
+        )
     else:
         yield f"a message costs {HEADER_BYTES} bytes of header"
     yield "cycles: of the packet that is hardest for its converter, of those that were tried"

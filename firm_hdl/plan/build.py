@@ -298,7 +298,7 @@ class _Builder:
         # A short last step would cost a cycle in each element, before a loop, or in short packets.
         may_be_wide = len(self.open) > 1 or before_loop or not self.has_lengths
         if is_first:
-            may_be_wide |= self.layout.min_bytes <= 16 * self.bus_bytes
+            may_be_wide |= self.layout.least_bytes <= 16 * self.bus_bytes
         sizes = step_sizes(
             self.segment,
             self.bus_bytes,

@@ -142,7 +142,7 @@ def _charges(plan: Plan, layout: Layout) -> Iterator[str]:
         if around and length.most >= inner.charged_from:
             wanted[path] = inner
             outermost = min(around, key=len)
-            budget = plan.max_message_bytes - layout.min_bytes
+            budget = plan.max_message_bytes - layout.least_bytes
             wanted[outermost] = charge(loops[outermost], budget)
     for path, length in lengths.items():
         if length.charge != wanted.get(path):

@@ -85,14 +85,14 @@ def check_max_message_bytes(layout: Layout, max_message_bytes: int) -> None:
     # In Python, a bool is an integer, too.
     if not isinstance(max_message_bytes, int) or isinstance(max_message_bytes, bool):
         raise TypeError(f"Maximum message size must be an integer, not {max_message_bytes!r}")
-    if layout.min_bytes >= 1 << 32:
+    if layout.least_bytes >= 1 << 32:
         raise ValueError(
-            f"Each message has at least {layout.min_bytes} bytes, and at most {(1 << 32) - 1} are "
-            "possible"
+            f"Each message has at least {layout.least_bytes} bytes, and at most {(1 << 32) - 1} "
+            "are possible"
         )
-    if not layout.min_bytes <= max_message_bytes < 1 << 32:
+    if not layout.least_bytes <= max_message_bytes < 1 << 32:
         raise ValueError(
-            f"Maximum message size must be from {layout.min_bytes} bytes, the least that a "
+            f"Maximum message size must be from {layout.least_bytes} bytes, the least that a "
             f"{layout.message.name} has, to {(1 << 32) - 1}, not {max_message_bytes!r}"
         )
 
@@ -104,7 +104,7 @@ def most_items(layout: Layout, node: RunNode | LoopNode, max_message_bytes: int)
     For elements, it is also counted with the padding between them. An element without bytes counts
     as one byte, because it has a transfer.
     """
-    room = max_message_bytes - layout.min_bytes
+    room = max_message_bytes - layout.least_bytes
     if isinstance(node, RunNode):
         return max(0, (room - node.terminated) // node.item.bytes)
     padded = (room + _credit(layout)) // max(1, node.repeated_bytes)
@@ -118,7 +118,7 @@ def charges_of(layout: Layout, max_message_bytes: int) -> dict[Path, Charge]:
     do not share a budget.
     """
     credit = _credit(layout) if any(map(_claims_padding, walk(layout.nodes))) else 0
-    budget = max_message_bytes - layout.min_bytes
+    budget = max_message_bytes - layout.least_bytes
     least_bytes = charged_from(max_message_bytes)
 
     def charge(node: RunNode | LoopNode) -> Charge:

@@ -12,7 +12,7 @@ from firm_hdl.registers.head import BODY_ADDRESS
 from firm_hdl.registers.message import MessageMap, members_of, size_of
 from firm_hdl.registers.table import RegisterMap
 
-__all__ = ["c_header", "table_c_header"]
+__all__ = ["c_header", "c_values", "table_c_header"]
 
 _KEYWORDS = frozenset(
     "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t "
@@ -165,6 +165,25 @@ def _member(kind: FieldType, shape: Any, declared: str, indent: str) -> Iterator
         yield f"{indent}struct {{"
         yield from _members(kind, shape, f"{indent}  ")
         yield f"{indent}}} {declared};"
+
+
+def c_values(layout: MessageMap) -> Iterator[tuple[str, Primitive]]:
+    """Yield each value of the struct: what selects it in C, such as ``linear.x``, and its type."""
+    return _values(layout.message, layout.shape, "")
+
+
+def _values(kind: FieldType, shape: Any, name: str) -> Iterator[tuple[str, Primitive]]:
+    if isinstance(kind, Array):
+        for index in range(kind.count):
+            yield from _values(kind.element, shape.elem_shape, f"{name}[{index}]")
+    elif isinstance(kind, Primitive):
+        yield name, kind
+    else:
+        assert isinstance(kind, Message)
+        found = list(members_of(kind, shape))
+        names = scope_names(each for each, _, _ in found)
+        for each, inner, part in found:
+            yield from _values(inner, part, f"{name}.{_word(names[each])}".lstrip("."))
 
 
 def _type(kind: Primitive) -> str:

@@ -1,8 +1,14 @@
 """Simulation helpers to test accelerators in plain Amaranth.
 
-`send_packets`, `receive_packets`, `MessagePort` and `watch` are for a user's own testbenches.
-`loopback`, `decode` and `encode` run converters as functions. `Harness` with `RunOptions` runs one
-circuit many times.
+Which one, from the slowest to the fastest:
+
+* A user's own testbench, written with `async`: `send_packets`, `receive_packets`, `watch`, and
+  `MessagePort` for whole messages. Any code may run between two transfers.
+* Converters as functions, for a test in one line: `loopback`, `decode`, `encode`.
+* Converters with thousands of packets, stalls or resets: `Harness` with `RunOptions`, elaborated
+  once. For any other design, :class:`firm_hdl.sim.bench.Bench`, on which `Harness` stands.
+* A design as large as a node, or a program that talks to the design while it runs:
+  :class:`firm_hdl.sim.fast.FastSimulation`, compiled by Verilator.
 """
 
 from __future__ import annotations

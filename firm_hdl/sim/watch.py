@@ -16,18 +16,17 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from amaranth.hdl import Cat, Shape, Value
-from amaranth.lib import data
+from amaranth.hdl import Cat, Value
 from amaranth.sim import SimulatorContext
 
 from firm_hdl.gateware.interfaces import Stream
+from firm_hdl.gateware.signatures import bus_bytes_of
 from firm_hdl.sim.design import Domain, check_domain
 
 __all__ = [
     "PacketRules",
     "StreamRuleError",
     "StreamRules",
-    "bus_bytes_of",
     "check_packet_stream",
     "check_stream",
     "watch",
@@ -123,23 +122,10 @@ def check_stream(port: Any, name: str) -> None:
         raise TypeError(f"{name!r} must be a stream, such as rx.packets, not {port!r}")
 
 
-def bus_bytes_of(port: Any) -> int:
-    """Return the bytes of a beat of a packet stream, and 0 for any other stream."""
-    shape = port.payload.shape()
-    if not isinstance(shape, data.StructLayout) or list(shape.members) != ["data", "count", "last"]:
-        return 0
-    lanes = shape.members["data"]
-    if not isinstance(lanes, data.ArrayLayout) or Shape.cast(lanes.elem_shape).width != 8:
-        return 0
-    counts = Shape.cast(shape.members["count"]).width
-    fits = counts == lanes.length.bit_length() and Shape.cast(shape.members["last"]).width == 1
-    return lanes.length if fits else 0
-
-
 def check_packet_stream(port: Any, name: str) -> int:
     """Return the bytes of a beat; raise a TypeError unless a port is a stream of packets."""
     check_stream(port, name)
-    bus_bytes = bus_bytes_of(port)
+    bus_bytes = bus_bytes_of(port.payload)
     if not bus_bytes:
         raise TypeError(
             f"{name!r} must be a stream of packets, such as rx.packets, not one of "
@@ -183,7 +169,7 @@ def watch(
     packets = {
         number: PacketRules(name, bus_bytes)
         for number, (name, port) in enumerate(streams.items())
-        if (bus_bytes := bus_bytes_of(port))
+        if (bus_bytes := bus_bytes_of(port.payload))
     }
 
     async def watcher(ctx: SimulatorContext) -> None:

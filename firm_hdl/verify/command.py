@@ -21,10 +21,9 @@ from firm_hdl.arguments import (
     positive,
     seconds,
 )
-from firm_hdl.errors import Diagnostic, UserError
+from firm_hdl.errors import Diagnostic
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
-from firm_hdl.jobs.executors import PROCESSES, ExecutorError, check_executor
 from firm_hdl.node import Description
 from firm_hdl.plan import BUS_BYTES
 from firm_hdl.terminal import stage
@@ -54,7 +53,7 @@ _USUAL_SYSTEMS = ("ts3",)
 
 # Arguments that cannot be combined with ``--sut``.
 _OTHERS = (
-    *("bag", "bus_bytes", "executor", "golden", "oracle", "reference"),
+    *("bag", "bus_bytes", "golden", "oracle", "reference"),
     *("share_circuits", "simulator", "systems", "vcd"),
     *("board", "node", "write_node"),
 )
@@ -68,13 +67,10 @@ def run_verify(given: argparse.Namespace) -> int:
     """
     request = _request(given)
     stage("verify: reads definitions")
-    try:
-        # Report a type that cannot be used before simulators and oracles are imported.
-        work = resolve(request)
-        if given.write_node is not None:
-            return _write_node(work, given.write_node)
-    except UnknownTypeError as error:
-        raise UserError(str(error)) from None
+    # Report a type that cannot be used before simulators and oracles are imported.
+    work = resolve(request)
+    if given.write_node is not None:
+        return _write_node(work, given.write_node)
     stage("verify: finds tools and libraries")
     from firm_hdl.verify.run import run_workload
 
@@ -90,12 +86,13 @@ def run_verify(given: argparse.Namespace) -> int:
 
 def _facts(results: str) -> dict[str, Any]:
     """Return what is in a file of results, as values of JSON."""
-    from firm_hdl.verify.report.summary import count, outcomes_of
+    from firm_hdl.verify.report.summary import outcomes_of
     from firm_hdl.verify.results.file import read_results
+    from firm_hdl.verify.results.verdict import Counts
 
     found = read_results(results)
     outcomes = outcomes_of([found])
-    counts = count(outcomes)
+    counts = Counts.of(each.verdict for each in outcomes)
     return {
         "verdict": "failed" if found.failure else counts.verdict,
         "failure": found.failure or None,
@@ -392,14 +389,6 @@ def _add_results(group: argparse._ArgumentGroup) -> None:
         metavar="FILE",
         help="write a report of the results: FILE.html, FILE.md or FILE.json",
     )
-    group.add_argument(
-        "--executor",
-        type=_executor,
-        default=PROCESSES,
-        metavar="NAME",
-        help=f"{PROCESSES}, or dask://HOST:PORT for a cluster that runs ts2 and ts3; "
-        "default: %(default)s",
-    )
 
 
 def _add_board(group: argparse._ArgumentGroup) -> None:
@@ -464,13 +453,6 @@ def _write_node(work: Workload, path: str) -> int:
     write_description(work.request, [task.name for task in work.tasks], path)
     print(f"wrote   {path}")
     return 0
-
-
-def _executor(text: str) -> str:
-    try:
-        return check_executor(text)
-    except ExecutorError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _systems(text: str) -> tuple[str, ...]:

@@ -6,6 +6,27 @@ tests of all systems first.
 
 A type that was asked for by name has to be judged. If all types are tested, those that no oracle
 can judge are listed and do not count. A run that judged no test fails.
+
+From the command to the exit status, with TS3 as the example::
+
+    command.run_verify                  arguments become a Request
+        command.resolve                     and this a Workload: the types to test
+        run.run_workload
+            System.run                      for each system
+                Ts3.records
+                    system.run_and_record       the tests that the file of results lacks
+                        system.run_tests            in processes (jobs.executors.run_each)
+                            acceptance.accepted         one test: begins a Trial
+                                acceptance.accept_message
+                                    Acceptance.check_circuit, compare.run_differences
+                                Trial.end
+                system.counted
+                system.summary_of
+            run.failure
+
+A verdict is made in `Trial.verdict`, of what the test added to its trial. It may change once, in
+`records.settled`, which `system.counted` calls: a type whose circuit was simulated for another type
+has the verdict of that one. `failure` decides the exit status.
 """
 
 from __future__ import annotations
@@ -14,19 +35,13 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
-from firm_hdl.errors import UserError
-from firm_hdl.export.build import BuildError
-from firm_hdl.jobs.executors import ExecutorError
 from firm_hdl.jobs.processes import unwound_when_terminated
-from firm_hdl.jobs.programs import ProgramMissingError
-from firm_hdl.verify.bench import Benches
 from firm_hdl.verify.board.system import Boards
 from firm_hdl.verify.clients.system import Libraries
 from firm_hdl.verify.command import Workload
-from firm_hdl.verify.references.client import ClientMissingError
+from firm_hdl.verify.generated_benches import Benches
 from firm_hdl.verify.report.formats import write_report
 from firm_hdl.verify.results.file import (
-    ResultsError,
     ResultsWriter,
     code_digest,
     environment,
@@ -36,7 +51,6 @@ from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.results.verdict import Failed, NotJudged
 from firm_hdl.verify.systems.options import Request
 from firm_hdl.verify.systems.system import System
-from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.system import Ts1, each_distro
 from firm_hdl.verify.ts2.system import Ts2
 from firm_hdl.verify.ts3.system import Ts3
@@ -54,26 +68,28 @@ def run_workload(work: Workload) -> int:
     errors in the others are printed at the end.
     """
     request = work.request
-    try:
-        with unwound_when_terminated():
-            found = _run_systems(work)
-        for line in concluded(found, request):
-            print(line)
-        if request.report is not None and request.results is not None:
-            write_report([request.results], request.report)
-            print(f"wrote   {request.report}")
-    except (
-        BuildError,
-        ClientMissingError,
-        ExecutorError,
-        ResultsError,
-        ProgramMissingError,
-        UnknownTypeError,
-    ) as error:
-        raise UserError(str(error)) from None
+    with unwound_when_terminated(), ExitStack() as stack:
+        systems: Sequence[System] = [Libraries(work.tasks, request)]
+        if not request.libraries:
+            systems = [each for name in request.systems for each in SYSTEMS[name](work)]
+        for system in systems:
+            stack.enter_context(system)
+        writer = None
+        if request.results is not None:
+            writer = stack.enter_context(_writer(work, request.results, systems))
+        # All systems run, even if an earlier one has failures.
+        found = [each for system in systems for each in system.run(writer)]
+        why = failure(found, request, len(work.problems))
+        if writer is not None:
+            writer.conclude(why)
+    for line in concluded(found, request):
+        print(line)
+    if request.report is not None and request.results is not None:
+        write_report([request.results], request.report)
+        print(f"wrote   {request.report}")
     for problem in work.problems:
         print(problem, file=sys.stderr)
-    return 1 if failure(found, request, len(work.problems)) else 0
+    return 1 if why else 0
 
 
 def failure(found: Sequence[Record], request: Request, refused: int = 0) -> str:
@@ -114,24 +130,6 @@ def concluded(found: Sequence[Record], request: Request) -> list[str]:
     return lines
 
 
-def _run_systems(work: Workload) -> list[Record]:
-    """Run the test systems; return all tests with their verdicts."""
-    with ExitStack() as stack:
-        systems: Sequence[System] = [Libraries(work.tasks, work.request)]
-        if not work.request.libraries:
-            systems = [each for name in work.request.systems for each in SYSTEMS[name](work)]
-        for system in systems:
-            stack.enter_context(system)
-        writer = None
-        if work.request.results is not None:
-            writer = stack.enter_context(_writer(work, work.request.results, systems))
-        # All systems run, even if an earlier one has failures.
-        found = [each for system in systems for each in system.run(writer)]
-        if writer is not None:
-            writer.conclude(failure(found, work.request, len(work.problems)))
-        return found
-
-
 def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWriter:
     """Open a new file of results, or one to continue."""
     request = work.request
@@ -140,15 +138,15 @@ def _writer(work: Workload, path: str, systems: Sequence[System]) -> ResultsWrit
     options = {**request.kept, "code": code_digest(), "inputs": inputs_digest(read)}
     for system in systems:
         options |= system.options
-    more = {"executor": request.executor}
+    session = environment()
     if problems := work.problems:
         # TS2, TS3 and the benches have no tests of these definitions, so the file names them here.
-        more["definitions that are refused"] = f"{len(problems)}: {min(problems)}"
+        session["definitions that are refused"] = f"{len(problems)}: {min(problems)}"
     return ResultsWriter(
         path,
         options=options,
         planned=[test for system in systems for test in system.tests],
-        session=environment(**more),
+        session=session,
     )
 
 

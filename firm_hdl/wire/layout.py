@@ -123,7 +123,7 @@ class Layout:
     rules: WireRules
     # Everything after the encapsulation header, with nested messages written out.
     nodes: tuple[Node, ...]
-    min_bytes: int  # Lower bound of the size of a packet in bytes, header included.
+    least_bytes: int  # Lower bound of the size of a packet in bytes, header included.
 
 
 def lay_out(message: Message, wire: Wire | None = None) -> Layout:
@@ -146,7 +146,7 @@ def lay_out(message: Message, wire: Wire | None = None) -> Layout:
         message=message,
         rules=rules,
         nodes=nodes,
-        min_bytes=rules.header_bytes + builder.unpadded.shortest(message, 0),
+        least_bytes=rules.header_bytes + builder.unpadded.shortest(message, 0),
     )
 
 

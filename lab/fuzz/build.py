@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from firm_hdl.jobs.processes import ToolError, made_by, run_tool
-from firm_hdl.jobs.programs import find_compiler, find_verilator
-from firm_hdl.verify.simulators.programs import runtime_of, runtime_parts
+from firm_hdl.jobs.programs import find_compiler, find_verilator, verilator_sources
+from firm_hdl.verify.simulators.programs import runtime_of
 from lab.fuzz.circuits import Circuit, templates
 from lab.fuzz.table import Table
 
@@ -87,7 +87,7 @@ def build(circuits: Sequence[Circuit], table: Table, folder: Path, tools: Tools)
     """
     (folder / _TABLE).write_text(table.text(), encoding="utf-8")
     sources: list[str] = []
-    parts: dict[str, None] = {}
+    runtime_sources: dict[Path, None] = {}
     for circuit in circuits:
         for name, text in circuit.files.items():
             (folder / name).write_text(text, encoding="utf-8")
@@ -95,7 +95,8 @@ def build(circuits: Sequence[Circuit], table: Table, folder: Path, tools: Tools)
         names = ["--prefix", circuit.prefix, "--top-module", circuit.module, "--Mdir", model.name]
         run_tool([*tools.verilator, *_VERILATE, *names, *circuit.files], folder)
         makefile = made_by("Verilator", model / f"{circuit.prefix}_classes.mk")
-        parts |= dict.fromkeys(runtime_parts(makefile))
+        text = makefile.read_text(encoding="utf-8")
+        runtime_sources |= dict.fromkeys(verilator_sources(tools.verilator, text))
         sources += sorted(str(path.relative_to(folder)) for path in model.glob("*.cpp"))
     main = templates.get_template("model.cc.j2").render(
         type=" ".join(dict.fromkeys(circuit.name for circuit in circuits)),
@@ -104,8 +105,8 @@ def build(circuits: Sequence[Circuit], table: Table, folder: Path, tools: Tools)
         circuits=circuits,
     )
     (folder / "model.cc").write_text(main, encoding="utf-8")
-    own = tuple(sorted(_HARNESS.glob("*.cpp")))
-    runtime = runtime_of(tools.verilator, tools.compiler, _HARNESS_OPTIONS, own, tuple(parts))
+    own = sorted(_HARNESS.glob("*.cpp"))
+    runtime = runtime_of(tools.compiler, _HARNESS_OPTIONS, (*runtime_sources, *own))
     command = [*tools.compiler, *_MODEL_OPTIONS, *runtime.includes, "model.cc", *runtime.objects]
     run_tool([*command, "-pthread", "-o", _PROGRAM], folder)
     made_by(tools.compiler[0], folder / _PROGRAM)

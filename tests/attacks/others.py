@@ -255,7 +255,6 @@ def _options() -> Iterator[Attack]:
             ("verify", BOOL, "--jobs", "0"),
             ("verify", BOOL, "--systems", "ts9"),
             ("verify", BOOL, "--report", "x.html"),
-            ("verify", BOOL, "--executor", "dask://nowhere"),
             ("golden", "check", "nowhere"),
             ("golden", "burn", "nowhere"),
             ("cover", BOOL, "--check", "nowhere"),

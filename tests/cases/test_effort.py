@@ -10,7 +10,7 @@ from firm_hdl.cases.make import Case
 from firm_hdl.frontend import Library
 from firm_hdl.plan import Edge, build_plan
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.wire import lay_out
 from tests.depth import by_depth
 from tests.strategies import make
@@ -94,7 +94,7 @@ def test_types_are_simulated_in_part(monkeypatch, whole):
     assert part.coverage.taken < whole.coverage.taken == whole.coverage.possible
     assert f"of {whole.cases + 1} packets" in part.note and not whole.note
     # A given number of cases is kept.
-    few = Options(most_cases=3, stalled=False, broken=False)
+    few = CaseOptions(most_cases=3, stalled=False, broken=False)
     assert not accept("lyrical", HEADER, few).note
 
 
@@ -111,7 +111,7 @@ def large(tmp_path):
     folder.mkdir(parents=True)
     (folder / "Image.msg").write_text(f"uint8[{PIXELS}] pixels\nuint8 last\n")
     (folder / "Cloud.msg").write_text("uint8[6000000] points\nuint8 last\n")
-    return Options(paths=(str(tmp_path),))
+    return CaseOptions(paths=(str(tmp_path),))
 
 
 def test_long_messages_are_simulated(large, monkeypatch):

@@ -12,7 +12,7 @@ from firm_hdl.cases.oracle import distro_oracle
 from firm_hdl.cases.user_oracle import judge_of, oracle_name
 from firm_hdl.frontend import Library
 from firm_hdl.model import Message
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from tests.verify.judged import accept, assert_passed
 
 
@@ -128,5 +128,5 @@ def test_chars_of_idl_are_signed(tmp_path):
     assert fields["three"][1][0][1][0] == fields["many"][1][0][1][0] == "int8"
     plain = judge_of(load_message("own_msgs/Plain", paths=[tmp_path]))
     assert dict(plain.oracle.fields(plain.name))["one"][1][0] == "char" and plain.note == ""
-    result = accept("lyrical", "own_msgs/msg/Chars", Options(paths=(str(tmp_path),)))
+    result = accept("lyrical", "own_msgs/msg/Chars", CaseOptions(paths=(str(tmp_path),)))
     assert_passed(result)

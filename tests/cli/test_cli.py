@@ -125,8 +125,8 @@ def test_wrong_definition_keeps_earlier_output(workdir, capsys):
         (
             ["info", "example_interfaces/msg/Bool"],
             "error: package 'example_interfaces' is not found; this ROS package does not come with "
-            "firm-hdl: name a folder that has it with --path, or source the setup file of an "
-            "installation that does\n",
+            "firm-hdl: name a folder that has it with --path (in a node: 'paths'), or source the "
+            "setup file of an installation that does\n",
         ),
         (["list", "--path", "nowhere"], "error: 'nowhere' is not a folder\n"),
         (

@@ -43,7 +43,7 @@ DEFAULTS = {
     ),
     "board": (
         ["init", "kria"],
-        {"action": "init", "board": "kria", "file": None, "out": None},
+        {**ORIGINS, "action": "init", "board": "kria", "file": None, "out": None},
     ),
     "doctor": ([], {"as_json": False}),
     "md5": ([], {**ORIGINS, "types": [], "all": False}),
@@ -60,7 +60,7 @@ DEFAULTS = {
         | {"oracle": [], "golden": None, "simulator": "python", "cases": None}
         | {"stalls": True, "broken": True, "share_circuits": None, "vcd": None}
         | {"max_message_bytes": None, "sut": [], "reference": [], "results": None}
-        | {"report": None, "executor": "processes", "board": None, "node": None}
+        | {"report": None, "board": None, "node": None}
         | {"write_node": None, "engine": "auto", "silent_seconds": None, "as_json": False},
     ),
     "report": (
@@ -247,7 +247,6 @@ def test_folders_exclude_recordings(capsys):
         ("ports", ["records", "flat"], ["vectors"]),
         ("format", [], ["xml"]),
         ("simulator", ["python", "ghdl", "iverilog", "verilator"], ["vcs"]),
-        ("executor", ["processes", "dask://a:1"], ["threads", "dask://a"]),
         ("systems", ["ts1", "ts1,ts2,ts3"], ["ts9", ""]),
         ("seed", ["0", "12345"], ["x"]),
     ],

@@ -29,9 +29,9 @@ PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *DOCS.rglob("*.md")])
 EXAMPLES = sorted(path.stem for path in (ROOT / "examples").glob("*.py"))
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-# Quoted commands that take seconds. The tests of `prove`, of `build` and of `verify --bag` see
-# their faults, with smaller types.
-SLOW = {"trust-0", "own-packages-0", "own-packages-1", "recordings-1"}
+# What takes seconds. The tests of `prove`, `build`, `verify --bag` and `build_component` see its
+# faults, with smaller types.
+SLOW = {"trust-0", "own-packages-0", "own-packages-1", "recordings-1", "parts-4"}
 TWIST = "geometry_msgs/msg/Twist"
 
 
@@ -74,8 +74,8 @@ def workdir(tmp_path, monkeypatch):
     return tmp_path
 
 
-# Two deserializers and a gate with a wide bus take as long as the other filters together.
-LONG = {"cloud_filter"}
+# Simulations of seconds, of converters that other examples have, too.
+LONG = {"cloud_filter", "image_filter", "soc_part"}
 
 
 @pytest.mark.snapshot
@@ -130,7 +130,6 @@ QUOTES = [
     ("howto/systemverilog.md", "systemverilog", "sv_motor/motor.sv"),
     ("howto/verilog.md", "verilog", "cocotb_motor/motor.v"),
     ("howto/cocotb.md", "py", "cocotb_motor/test_motor.py"),
-    ("howto/litex.md", "py", "litex/soc.py"),
     ("howto/amaranth.md", "py", "half_speed.py image_filter.py cloud_filter.py soc_part.py"),
 ]
 

@@ -177,7 +177,6 @@ def test_make_examples_runs_every_one():
     (named,) = re.findall(r"^HDL_EXAMPLES := (.*)$", text, re.M)
     found = [*EXAMPLES.glob("*/Makefile"), *EXAMPLES.glob("nodes/wheels_*/Makefile")]
     names = [path.parent.relative_to(EXAMPLES).as_posix() for path in found]
-    # That one takes LiteX from the network, and minutes.
-    assert sorted([*named.split(), "litex"]) == sorted(names)
+    assert sorted(named.split()) == sorted(names)
     page = (ROOT / "docs" / "howto" / "index.md").read_text()
     assert all(f"`examples/{name}`" in page for name in named.split())

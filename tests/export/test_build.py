@@ -138,7 +138,7 @@ def test_wrong_types_change_no_file_and_are_all_reported(tmp_path):
         build(["std_msgs/msg/Bool", "std_msgs/msg/Boo", "nothing/msg/Here"], tmp_path / "out")
     assert [diagnostic.message for diagnostic in caught.value.diagnostics] == [
         "type 'Boo' is not defined in package 'std_msgs'; did you mean 'std_msgs/msg/Bool'?",
-        "package 'nothing' is not found",
+        "package 'nothing' is not found; --path names a folder that has it (in a node: 'paths')",
     ]
     assert not (tmp_path / "out").exists()
 

@@ -65,7 +65,8 @@ def flaws(text: str) -> list[str]:
 # The views with records have the flat one inside.
 @pytest.mark.parametrize(
     "kind",
-    ["record", "flat", pytest.param("records", marks=pytest.mark.thorough)],
+    # The layer with a record for each field has the flat one inside.
+    ["record", *(pytest.param(each, marks=pytest.mark.thorough) for each in ("flat", "records"))],
 )
 def test_vhdl_has_one_clock_and_no_latch(ghdl, folders, tmp_path, kind):
     tried = 0

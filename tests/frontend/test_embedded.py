@@ -145,8 +145,8 @@ def test_missing_package_of_ros_is_distinguished_from_an_unknown_one(distro, pac
         Library(distro).interface(f"{package}/Such")
     assert str(caught.value) == (
         f"error: package '{package}' is not found; this ROS package does not come with "
-        f"firm-hdl: name a folder that has it with --path, or source the setup file of an "
-        f"installation that does"
+        f"firm-hdl: name a folder that has it with --path (in a node: 'paths'), or source the "
+        f"setup file of an installation that does"
     )
-    with pytest.raises(DefinitionError, match=r"package 'nobodys' is not found$"):
+    with pytest.raises(DefinitionError, match=r"package 'nobodys' is not found; --path names"):
         Library(distro).interface("nobodys/Such")

@@ -152,7 +152,7 @@ def test_items_of_one_size_with_and_without_padding_before_them():
 def test_bad_packets_are_reported_and_do_not_affect_the_next(wire, data, case, options, stalls):
     definition, value = case
     # A deserializer completes what a damaged length claims: tens of thousands of cycles.
-    most = by_depth(lay_out(definition.message, wire).min_bytes + 300, 100_000)
+    most = by_depth(lay_out(definition.message, wire).least_bytes + 300, 100_000)
     rx = Deserializer(definition.message, wire=wire, max_message_bytes=most, **options)
     assume(is_quick(rx.plan))
     good = encode(rx.plan, to_transfers(rx.plan, definition.message, value))[0]

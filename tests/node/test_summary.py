@@ -104,6 +104,9 @@ publish:
     assert area["lut"] == pytest.approx(14292 + 80, rel=0.03)
     assert area["ff"] == pytest.approx(12826 - 365, rel=0.03)
     assert f"estimated, without the accelerator: {area['lut']} LUT" in summary(description)
+    # Of a datagram's template: a reply has two parameters of 28 bytes, and a sentinel.
+    assert "costs 92 bytes of headers per reader, and a response 152\n" in summary(description)
+    assert bytes_on_link(description, 100) == 100 + 152 + 3
     # Of a bus of 16 bytes, no converter was measured.
     wide = facts_of(read(f"bus_bytes: 16\n{text.replace('accelerator', '# ')}"))
     assert area_of(wide)["without"] == ", without parts that were not measured"

@@ -102,7 +102,7 @@ def test_any_packet_decodes_as_the_contract_says_on_every_bus(wire, case, data):
     definition, value = case
     layout = lay_out(definition.message, wire)
     plans = [
-        build_plan(layout, bus_bytes=width, max_message_bytes=layout.min_bytes + 700)
+        build_plan(layout, bus_bytes=width, max_message_bytes=layout.least_bytes + 700)
         for width in BUS_WIDTHS
     ]
     packet = encode(plans[3], to_transfers(plans[3], definition.message, value))[0]

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from firm_hdl.verify.results.records import Seconds
 from firm_hdl.verify.results.verdict import KnownDifference, Passed
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.acceptance import accepted
-from firm_hdl.verify.ts3.task import test_of
+from firm_hdl.verify.ts3.task import as_test
 
 __all__ = ["NAN_KEY", "TIME_KEY", "accept", "assert_known", "assert_passed", "without_times"]
 
@@ -22,9 +22,9 @@ TIME_KEY = "rosbags-time-signs"
 
 def accept(distro, name, options=None):
     """Run TS3 on a type in this process; return its record."""
-    options = options or Options()
+    options = options or CaseOptions()
     task = TypeUnderTest(distro=distro, name=name, same=(distro,))
-    return accepted(options, test_of(task, options))
+    return accepted(options, as_test(task, options))
 
 
 def assert_passed(result, known=()):

@@ -29,7 +29,7 @@ def request_of(monkeypatch):
     return asked
 
 
-SHARED = "--jobs 3 --seed 4 --results r.jsonl --report r.html --executor dask://host:1"
+SHARED = "--jobs 3 --seed 4 --results r.jsonl --report r.html"
 CASES = "--cases 9 --no-broken --vcd waves --simulator iverilog"
 
 
@@ -52,7 +52,6 @@ def test_every_option_of_a_run_of_own_types_reaches_the_request(request_of):
         widths=(16, 2),
         seed=4,
         jobs=3,
-        executor="dask://host:1",
         oracles=("genmsg", "ros2"),
         golden="plans",
         simulator="iverilog",
@@ -126,7 +125,6 @@ BAG = ["--bag", "x.mcap"]
         (["--all", "--sut", "rosbags", "--no-broken"], "do not go with --sut"),
         (["--all", "--systems", "ts1,ts4"], "no test system 'ts4'"),
         (["--all", "--systems", ""], "no test system ''"),
-        (["--all", "--executor", "cluster"], "'cluster'"),
         ([], "name types, or all of them with --all"),
         (["--all", "std_msgs/msg/Bool"], "name types, or all of them with --all"),
         (["--all", "--jobs", "0"], "must be at least 1, not 0"),
@@ -147,7 +145,6 @@ OTHERS = {
     "bag": "x",
     "board": "sim",
     "bus-bytes": "4",
-    "executor": "dask://host:1",
     "golden": "x",
     "oracle": "genmsg",
     "node": "x",

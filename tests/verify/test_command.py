@@ -112,7 +112,7 @@ def test_every_system_runs_even_if_the_first_fails(monkeypatch):
         def __init__(self, name, is_well):
             self.name, self.is_well = name, is_well
 
-        def run(self, writer):
+        def records(self, writer):
             ran.append(self.name)
             return [a_record(verdict=Passed(1) if self.is_well else Failed(("",)))]
 

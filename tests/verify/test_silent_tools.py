@@ -18,7 +18,7 @@ from firm_hdl.verify.clients.system import compare
 from firm_hdl.verify.references.clients import CLIENTS
 from firm_hdl.verify.results.verdict import Passed
 from firm_hdl.verify.simulators.programs import Verilator
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.depth import by_depth
@@ -81,7 +81,7 @@ def test_cross_check_does_not_pass_with_a_silent_simulator(
     fake, monkeypatch, simulator, names, status
 ):
     monkeypatch.setenv(simulator.upper(), fake(SILENT[status], *names))
-    result = accept("lyrical", BOOL, Options(simulator=simulator, **FEW))
+    result = accept("lyrical", BOOL, CaseOptions(simulator=simulator, **FEW))
     (failure,) = result.verdict.failures
     assert ("did not write " if status == 0 else "exit status 1") in failure
     assert isinstance(passes().verdict, Passed)
@@ -92,7 +92,7 @@ FEW = {"most_cases": 1, "stalled": False, "broken": False, "references": ()}
 
 @functools.cache
 def passes():
-    return accept("lyrical", BOOL, Options(**FEW))
+    return accept("lyrical", BOOL, CaseOptions(**FEW))
 
 
 HEADERS = '#!/bin/sh\ncase "$1" in -E) echo "#define FASTCDR_VERSION_MAJOR 1"; exit 0;; esac\n'
@@ -180,7 +180,7 @@ def test_cross_check_does_not_pass_with_a_silent_compiler(fake):
         need(f"verilator ({error})", None)
     compiler = fake(SILENT[0], "g++")
     # Not with Fast CDR, whose compiler it would be in all further tests.
-    options = Options(simulator="verilator", most_cases=1, references=())
+    options = CaseOptions(simulator="verilator", most_cases=1, references=())
     result = accept("lyrical", BOOL, options)
     (failure,) = result.verdict.failures
     assert failure == f"Verilator: {compiler} ended without an error, but did not write replay"

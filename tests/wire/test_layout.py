@@ -71,7 +71,7 @@ def test_static_gaps_are_those_of_every_packet(wire, data):
     gaps = gaps_of(layout)
     value = data.draw(values(message))
     packet, _ = encode(plan, to_transfers(plan, message, value))
-    assert len(packet) >= layout.min_bytes
+    assert len(packet) >= layout.least_bytes
     reference = Reference(plan, message, packet)
     assert reference.status == "OK"
     for path, found in reference.gaps:
@@ -132,8 +132,8 @@ def test_an_empty_message_is_nothing_on_ros1_and_an_octet_on_cdr():
         ("ros1", {"a": "string", "b": "uint8[]", "c": "float64[3]"}, 4 + 4 + 24),
     ],
 )
-def test_min_bytes_is_the_size_of_the_emptiest_packet_without_padding(wire, fields, size):
-    assert lay_out(make("ros2", fields), wire).min_bytes == size
+def test_least_bytes_is_the_size_of_the_emptiest_packet_without_padding(wire, fields, size):
+    assert lay_out(make("ros2", fields), wire).least_bytes == size
 
 
 WORD = Gap(align=4, bytes=0)

@@ -73,7 +73,7 @@ def test_layout_refuses_each_field_once_with_its_position(load, tmp_path, wire, 
 def test_a_layout_that_took_it_would_be_noticed(load, monkeypatch):
     # Without the rule, there is a layout of 16 bytes: no other check refuses it.
     monkeypatch.setattr(layout, "refusals", lambda message: [])
-    assert lay_out(load("p/Wide")).min_bytes >= 16 * 4
+    assert lay_out(load("p/Wide")).least_bytes >= 16 * 4
 
 
 @pytest.mark.parametrize("make", [Deserializer, Serializer, RecordReader])
@@ -88,7 +88,7 @@ def test_constants_are_never_on_a_wire(load):
     (constant,) = message.constants
     assert (str(constant.type), constant.value) == ("long double", 1.5)
     assert refusals(message) == []
-    assert lay_out(message).min_bytes == 12
+    assert lay_out(message).least_bytes == 12
 
 
 def test_a_message_without_a_text_is_refused_by_its_names():

@@ -53,15 +53,11 @@ def instance(message: Message, plan: Plan, direction: Direction, *, module: str)
     ports = ports_of(plan, direction)
     for port in ports:
         if port.leaf is None and port.name not in ("aclk", "aresetn", _STATUS_READY):
-            text.append(f"wire {_range(port)}{port.name};\n")
+            text.append(f"wire {port.verilog_range}{port.name};\n")
     text.append(f"\n{module} {direction} (\n")
     text += _connections(message, plan, direction, ports)
     text.append(");\n")
     return "".join(text)
-
-
-def _range(port: Port) -> str:
-    return f"[{port.width - 1}:0] " if port.width > 1 else ""
 
 
 def _connections(

@@ -202,8 +202,7 @@ def flat_view(plan: Plan, package: str, cores: Mapping[Direction, Core]) -> View
 
 
 def _signals(port: Port) -> str:
-    kind = f"std_logic_vector({port.width - 1} downto 0)" if port.width > 1 else "std_logic"
-    return f"  signal rx_{port.name}, tx_{port.name} : {kind};\n"
+    return f"  signal rx_{port.name}, tx_{port.name} : {port.vhdl_type};\n"
 
 
 STIMULI = "stimuli.txt"

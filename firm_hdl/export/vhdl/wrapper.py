@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
+from firm_hdl.export.ports import PlainPort, vhdl_type
 from firm_hdl.export.primitives import TYPES_NAME, primitive_name
 from firm_hdl.export.record_top import record_ports
 from firm_hdl.export.top import Direction, Port, ports_of
@@ -42,8 +44,14 @@ use work.{TYPES_NAME}.all;
 
 _STATUS_READY, _TAKEN = "m_axis_status_tready", "'1'"
 
-Line = tuple[str, str, str]
-"""A port: name, direction and type, meaning."""
+
+class Line(NamedTuple):
+    """A port in VHDL."""
+
+    name: str
+    direction: str
+    type: str
+    meaning: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,12 +64,12 @@ class Core:
 
 def stream_lines(plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
     """List the ports of a converter with a record of streams."""
-    forwards, backwards = ("out", "in ") if direction == "deserializer" else ("in ", "out")
+    forwards, backwards = ("out", "in") if direction == "deserializer" else ("in", "out")
     lines = [_outer_line(port) for port in ports_of(plan, direction) if port.leaf is None]
     status = next(k for k, line in enumerate(lines) if line[0].startswith("m_axis_status"))
     lines[status:status] = [
-        ("msg", f"{forwards} {tree.root.type}", f"Data and valid of {plan.message}."),
-        ("rdy", f"{backwards} {tree.root.ready_type}", "Ready of the fields."),
+        Line("msg", forwards, tree.root.type, f"Data and valid of {plan.message}."),
+        Line("rdy", backwards, tree.root.ready_type, "Ready of the fields."),
     ]
     return lines
 
@@ -69,7 +77,7 @@ def stream_lines(plan: Plan, tree: Tree, direction: Direction) -> list[Line]:
 def record_lines(plan: Plan, values: ValueType, direction: Direction) -> list[Line]:
     """List the ports of a converter with a record of values."""
     return [
-        ("msg", f"{port.direction:3} {values.name}", f"The fields of {plan.message}.")
+        Line("msg", port.direction, values.name, f"The fields of {plan.message}.")
         if port.name == "msg_data"
         else _outer_line(port)
         for port in record_ports(plan, direction, values.bits)
@@ -78,24 +86,15 @@ def record_lines(plan: Plan, values: ValueType, direction: Direction) -> list[Li
 
 def _outer_line(port: Port) -> Line:
     """Return a port of the user's layer: the core's port, but ``tkeep`` is always a vector."""
-    kind = _kind(port.width, vector=port.width > 1 or _is_vector(port))
-    return port.name, f"{port.direction:3} {kind}", port.meaning
+    kind = vhdl_type(port.width, vector=_is_vector(port))
+    return Line(port.name, port.direction, kind, port.meaning)
 
 
-def plain_lines(ports: Iterable[Port], names: Mapping[str, str]) -> list[Line]:
-    """List the plain ports of a circuit."""
+def plain_lines(ports: Iterable[PlainPort], names: Mapping[str, str]) -> list[Line]:
+    """List the plain ports of a circuit, for an instance or a component."""
     return [
-        (
-            names.get(port.name, port.name),
-            f"{port.direction:3} {_kind(port.width, vector=port.width > 1)}",
-            port.meaning,
-        )
-        for port in ports
+        Line(names.get(port.name, port.name), port.direction, port.vhdl_type, "") for port in ports
     ]
-
-
-def _kind(width: int, *, vector: bool) -> str:
-    return f"std_logic_vector({width - 1} downto 0)" if vector else "std_logic"
 
 
 def _is_vector(port: Port) -> bool:
@@ -120,15 +119,16 @@ def instance(
     * `packages`: packages with the types of the ports.
     * `tied`: a statement, without its semicolon, that ties off fields.
     """
-    width = max(len(name) for name, _, _ in lines)
+    width = max(len(line.name) for line in lines)
     signals = [
-        f"signal {name:{width}} : {kind[4:]};\n"
-        for name, kind, _ in lines
-        if name not in ("aclk", "aresetn", _STATUS_READY)
+        f"signal {line.name:{width}} : {line.type};\n"
+        for line in lines
+        if line.name not in ("aclk", "aresetn", _STATUS_READY)
     ]
     # A packet waits until its status is taken.
     parts = ",\n".join(
-        f"    {name:{width}} => {_TAKEN if name == _STATUS_READY else name}" for name, _, _ in lines
+        f"    {line.name:{width}} => {_TAKEN if line.name == _STATUS_READY else line.name}"
+        for line in lines
     )
     return "".join(
         [
@@ -146,11 +146,11 @@ def instance(
 
 def _port_clause(lines: list[Line], *, meanings: bool = True) -> Iterator[str]:
     """Yield the lines of a port clause."""
-    names = max(len(name) for name, _, _ in lines)
-    kinds = max(len(kind) for _, kind, _ in lines) + 1
+    names = max(len(line.name) for line in lines)
+    kinds = max(len(line.type) for line in lines) + 5
     yield "  port (\n"
-    for index, (name, kind, meaning) in enumerate(lines):
-        end = ";" if index < len(lines) - 1 else ""
+    for index, (name, direction, type_, meaning) in enumerate(lines):
+        end, kind = ";" if index < len(lines) - 1 else "", f"{direction:3} {type_}"
         line = f"    {name:{names}} : {kind + end:{kinds}}  -- {meaning}"
         if not meanings or len(line) > 100:
             if meanings:
@@ -252,7 +252,7 @@ class Conversions:
         if leaf.kind != "items" and (primitive == "bool" or primitive.startswith("float")):
             return whole
         name = self.names.get(port.name, port.name)
-        self.signals.append((name, _kind(port.width, vector=True)))
+        self.signals.append((name, vhdl_type(port.width, vector=True)))
         if self.direction == "serializer":
             convert = "to_slv" if leaf.kind == "items" else "std_logic_vector"
             self.assignments.append(f"  {name} <= {convert}({whole});\n")
@@ -287,7 +287,7 @@ def record_wrapper(
         else "  msg_data <= to_slv(msg);\n"
     )
     lines = record_lines(plan, values, direction)
-    signals = [("msg_data", _kind(bits, vector=True))]
+    signals = [("msg_data", vhdl_type(bits, vector=True))]
     head = (
         f"-- The {direction} of {plan.message}: whole messages, as a record of values.\n"
         f"-- {core.entity} has flat ports.\n"

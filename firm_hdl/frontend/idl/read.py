@@ -189,7 +189,7 @@ class _Reader:
         value = evaluate(node.value, lookup, _unsigned_bits(type_.name))
         fitting = fit(value, type_.name, node.value.span)
         if type_.name not in ("char", "wchar"):
-            value = Value(_KINDS.get(type_.name, "integer"), fitting)
+            value = Value(_KINDS[type_.name], fitting)
         return value, type_, fitting
 
     def _constant_type(self, node: Constant) -> TypeSyntax:
@@ -287,13 +287,14 @@ class _Reader:
             self.wrong.append(error.diagnostic)
 
 
-_KINDS: dict[str, Literal["integer", "float", "boolean", "text"]] = {
+_WORDS: dict[str, Literal["integer", "float", "boolean"]] = {
     "bool": "boolean",
-    "float32": "float",
-    "float64": "float",
-    "long double": "float",
-    "string": "text",
-    "wstring": "text",
+    "int": "integer",
+    "float": "float",
+}
+_KINDS: dict[str, Literal["integer", "float", "boolean", "text"]] = {
+    **{name: _WORDS[primitive.kind] for name, primitive in IDL_PRIMITIVES.items()},
+    **dict.fromkeys(("string", "wstring"), "text"),
 }
 
 

@@ -134,7 +134,7 @@ class PacketGate(Component):
         self.message, self.bus_bytes, self.when_full = message, bus_bytes, when_full
         self.plan = parser_plan(message, wire, bus_bytes, max_message_bytes)
         self.shape = MemoryShape(bus_bytes, memory_bytes, packets, side_bits)
-        least = lay_out(message, wire).min_bytes
+        least = lay_out(message, wire).least_bytes
         if memory_bytes < least:
             raise ValueError(
                 f"Memory size must be at least {least} bytes, the least that a {message.name} has, "

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from firm_hdl.export.component import ComponentPort
 from firm_hdl.export.fusesoc import STALLS, copied, fileset, simulation
-from firm_hdl.export.templates import text_of
+from firm_hdl.export.templates import templates, text_of
 from firm_hdl.node.benches.script import FRAMES, LinkScript
 from firm_hdl.node.description import Description, Topic
 from firm_hdl.node.frame import HEADER_BYTES
@@ -122,7 +121,7 @@ def _values(
         "ignores_topics": script.ignores_topics,
         "host": (HOST_ADDRESS, HOST_PORT),
         "link": description.link,
-        "answers": _address(description.link.host) or HOST_ADDRESS,
+        "answers": int(IPv4Address(description.link.host or HOST_ADDRESS)),
         "answers_port": description.link.host_port if description.link.host else HOST_PORT,
     }
 
@@ -131,14 +130,6 @@ def _most_bytes(description: Description, script: LinkScript) -> int:
     """Return the size of the longest frame that fits into a memory, in bytes."""
     sizes = [each.memory_bytes for topic in description.topics for _, each in topic.stores]
     return max([script.most_bytes, *(HEADER_BYTES + each for each in sizes)])
-
-
-def _address(text: str) -> int:
-    """Return an IPv4 address as a number; 0 for none."""
-    number = 0
-    for part in filter(None, text.split(".")):
-        number = number << 8 | int(part)
-    return number
 
 
 def _channels(ports: Sequence[ComponentPort], loop: tuple[Topic, Topic]) -> list[_Channel]:
@@ -164,17 +155,8 @@ def _channels(ports: Sequence[ComponentPort], loop: tuple[Topic, Topic]) -> list
     return found
 
 
-_templates = Environment(
-    loader=FileSystemLoader(Path(__file__).parent),
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-    keep_trailing_newline=True,
-)
-
-
 def _render(template: str, **values: Any) -> str:
-    return _templates.get_template(f"{template}.j2").render(values)
+    return templates(Path(__file__).parent).get_template(f"{template}.j2").render(values)
 
 
 def bench_core(name: str) -> dict[str, dict[str, Any]]:

@@ -19,7 +19,14 @@ from firm_hdl.export.manifest import digest, inputs_of, manifest_of
 from firm_hdl.garbage import search_put_off
 from firm_hdl.jobs import ProgramMissingError, ToolError, made_by, run_tool
 from firm_hdl.jobs.processes import unwound_when_terminated
-from firm_hdl.jobs.programs import Program, find_packaged, find_yosys, which, yowasp_command
+from firm_hdl.jobs.programs import (
+    Program,
+    errors_in,
+    find_nextpnr,
+    find_yosys,
+    which,
+    yowasp_command,
+)
 from firm_hdl.node.accelerator import load_accelerator
 from firm_hdl.node.bitstream.board import Board
 from firm_hdl.node.bitstream.families import Family
@@ -73,20 +80,15 @@ def find_tools(family: Family, *, is_run: bool = True) -> Tools:
 
     Raises `ProgramMissingError`. Raises `ToolError` if a package is installed and does not run.
     """
-    version = r"Version (?:nextpnr-)?(\S+?)\)"
-    placer = find_packaged(
-        family.placer, family.package, family.placer, "--version", version, is_run=is_run
-    )
-    if placer is None:
-        raise ProgramMissingError(f"{family.placer} is not installed: {PIP}")
+    install = f": {PIP}"
     # icepack does not tell its version.
     path = which(family.packer)
     command = yowasp_command(family.package, family.packer) or ((path,) if path else None)
     if not command:
-        raise ProgramMissingError(f"{family.packer} is not installed: {PIP}")
+        raise ProgramMissingError(f"{family.packer} is not installed{install}")
     return Tools(
-        yosys=find_yosys(f": {PIP}", is_run=is_run),
-        placer=placer,
+        yosys=find_yosys(install, is_run=is_run),
+        placer=find_nextpnr(family.package, family.placer, install, is_run=is_run),
         packer=Program(title=family.packer, command=command, version=""),
     )
 
@@ -264,9 +266,7 @@ def _run(program: Program, command: list[str], folder: Path) -> None:
         if too_many:
             listed = ", ".join(f"{name} {n:,} of {m:,}" for name, (n, m) in too_many.items())
             raise UserError(f"the node is too large for the FPGA: {listed}") from None
-        errors = [line.strip() for line in said.splitlines() if line.startswith("ERROR")]
-        reason = " ".join(errors[:2] or str(error).splitlines()[-2:])
-        raise ToolError(f"{program.title} failed: {reason}") from None
+        raise ToolError(f"{program.title} failed: {errors_in(said, str(error))}") from None
 
 
 def _figures(said: Mapping[str, Any], top: BoardTop) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from math import ceil, log2
 from typing import Any, TypeAlias
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Span
+from firm_hdl.export.ports import verilog_range
 from firm_hdl.node.bitstream.board import LINKS, Board
 from firm_hdl.node.bitstream.families import MOST_DEVIATION, Pin, Pll
 from firm_hdl.node.description import Description
@@ -148,9 +149,13 @@ def _link(
     of_link = [port for port in ports if port["member"].startswith("link.")]
     group = of_link[0]["name"].partition("_")[0]
     if group not in LINKS:
-        links = " and ".join(each for each in LINKS if each in board.groups())
-        kind = description.link.kind
-        problem(where, f"{board.name} has {links}; for '{kind}', the top level is yours to write")
+        there = [each for each in LINKS if each in board.groups()]
+        link = "kind: uart" if there[0] == "uart" else f"kind: udp, ethernet: {there[0]}, ..."
+        problem(
+            where,
+            f"{board.name} has {' and '.join(there)}, so the description needs 'link: {{{link}}}'; "
+            f"for '{description.link.kind}', the top level is yours to write",
+        )
         return []
     found = []
     for port in of_link:
@@ -287,7 +292,7 @@ def _verilog(
         inside.append(f"  assign constant_{pin.site} = 1'b{int(level)};\n")
     for port in ports:
         width = len(port.pins)
-        vector = f"[{width - 1}:0] " if width > 1 else ""
+        vector = verilog_range(width)
         declared.append(f"{port.direction} wire {vector}{port.name}")
         low = "".join(str(int(pin.is_low)) for pin in reversed(port.pins))
         inverted = f" ^ {width}'b{low}" if "1" in low else ""

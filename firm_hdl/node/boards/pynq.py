@@ -26,8 +26,8 @@ _STATUS = (0x04, 0x34)
 """MM2S_DMASR and S2MM_DMASR (PG021, 7.1)."""
 _INTERRUPTS = 1 << 12 | 1 << 14
 """IOC_Irq and Err_Irq in both."""
-_BUFFER_BYTES = 1 << 18
-"""Three of the largest frames, which have less than 64 kB."""
+_BUFFER_BYTES = 1 << 19
+"""For frames of less than 64 kB: three, or a scatter-gather engine's rings of three each."""
 _CLOCK_ERROR = 1e-3
 """Of a clock that a description rounds, such as 66.7 MHz."""
 

@@ -1,6 +1,6 @@
 """A node in the chip of the processor: frames in memory, which an AXI DMA of Xilinx moves.
 
-The DMA is in direct register mode: it has no scatter-gather engine. Names of registers and bits are
+The DMA is in direct register mode, or has a scatter-gather engine. Names of registers and bits are
 those of its manual, PG021.
 """
 
@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Literal, Protocol
 
+from firm_hdl.node.boards import descriptors
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.boards.devices import DmaBuffer, Uio
 
@@ -20,7 +21,8 @@ Channel = Literal["MM2S", "S2MM"]
 
 _AT: dict[Channel, int] = {"MM2S": 0x00, "S2MM": 0x30}
 _DMACR, _DMASR, _ADDRESS, _ADDRESS_MSB, _LENGTH = 0x00, 0x04, 0x18, 0x1C, 0x28
-_RS, _ALWAYS_1, _RESET = 1 << 0, 1 << 1, 1 << 2
+_CURDESC, _CURDESC_MSB, _TAILDESC = 0x08, 0x0C, 0x10
+_RS, _ALWAYS_1, _RESET, _IRQ_THRESHOLD_1 = 1 << 0, 1 << 1, 1 << 2, 1 << 16
 _HALTED, _SG_INCLUDED = 1 << 0, 1 << 3
 # Of the same bits in DMACR, which enable them.
 _IOC_IRQ, _ERR_IRQ = 1 << 12, 1 << 14
@@ -28,6 +30,9 @@ _ERRORS = {
     1 << 4: "DMAIntErr: a frame was longer than its buffer, or the DMA failed inside",
     1 << 5: "DMASlvErr: the memory refused an access",
     1 << 6: "DMADecErr: no memory has this address",
+    1 << 8: "SGIntErr: a descriptor was not handed over",
+    1 << 9: "SGSlvErr: the memory refused an access to a descriptor",
+    1 << 10: "SGDecErr: no memory has the address of a descriptor",
 }
 
 _LENGTH_BITS = "xlnx,sg-length-width"
@@ -39,6 +44,7 @@ _LENGTHS_BITS = range(8, 27)
 _ALIGNMENT = 64
 _ROOM_BYTES = 1 << 16
 _MOST_AT_ONCE = 256
+_MOST_DESCRIPTORS = 64
 _WAIT_SECONDS = 0.1
 """How long a reset or a start may take: each takes a few cycles."""
 
@@ -82,7 +88,9 @@ class ZynqBoard(Board):
     """A board with the link `axi_dma`, on its own processor.
 
     The buffer has three parts of a frame each: one that is sent, and two to receive, of which the
-    DMA has one while the other is read. What else is sent waits here.
+    DMA has one while the other is read. What else is sent waits here. If the DMA has a
+    scatter-gather engine, each direction has a ring of as many parts as the buffer has room for:
+    the DMA receives while this program is busy, and sends one frame after the other.
 
     An error of the DMA ends the board. It is counted as ``DMA errors``, and opening the board again
     resets the DMA, which tells the node to begin anew.
@@ -109,18 +117,28 @@ class ZynqBoard(Board):
         self._sends = self._has_stopped = False
         # The part that the DMA writes.
         self._written = 0
+        # With a scatter-gather engine. A frame that is split was longer than a buffer.
+        self._rings: dict[Channel, descriptors.Ring] = {}
+        self._has_high_addresses = self._is_split = False
 
     def open(self) -> None:
         self.close()
         self._waiting.clear()
         self._waiting_bytes = 0
-        self._sends = self._has_stopped = False
+        self._sends = self._has_stopped = self._is_split = False
+        self._rings = {}
         self._opened = self._devices(*self._names)
         try:
-            self._check_sizes(*self._opened)
-            self._start(self._opened[0])
-            self._receive_into(1)
-            self._check_length(self._opened[0])
+            registers, buffer = self._opened
+            self._check_sizes(registers, buffer)
+            if self._reset(registers):
+                self._make_rings(registers, buffer)
+            self._start(registers)
+            if self._rings:
+                self._move_tail("S2MM")
+            else:
+                self._receive_into(1)
+                self._check_length(registers)
             self._opened[0].take_interrupt()
             self._opened[0].enable_interrupt()
         except BoardError:
@@ -157,10 +175,11 @@ class ZynqBoard(Board):
             "link smaller 'buffer_bytes'"
         )
 
-    def _start(self, registers: Registers) -> None:
-        """Reset the DMA, and let both channels run."""
+    def _reset(self, registers: Registers) -> bool:
+        """Reset the DMA; return whether it has a scatter-gather engine."""
         if not _reset(registers):
             raise BoardError("the reset of the DMA does not end; does its clock run?")
+        status = 0
         for channel, at in _AT.items():
             control, status = registers.read(at + _DMACR), registers.read(at + _DMASR)
             if control & (_RS | _ALWAYS_1 | _RESET) != _ALWAYS_1 or not status & _HALTED:
@@ -168,11 +187,52 @@ class ZynqBoard(Board):
                     f"'{self._names[0]}' is no AXI DMA with a channel {channel}: its DMACR is "
                     f"{control:#010x} after a reset, and its DMASR {status:#010x}"
                 )
-            if status & _SG_INCLUDED:
-                raise BoardError("the DMA has a scatter-gather engine, which has to be left out")
-            registers.write(at + _DMACR, _RS | _IOC_IRQ | _ERR_IRQ)
+        return bool(status & _SG_INCLUDED)
+
+    def _start(self, registers: Registers) -> None:
+        for channel, at in _AT.items():
+            registers.write(at + _DMACR, _RS | _IOC_IRQ | _ERR_IRQ | _IRQ_THRESHOLD_1)
             if not _clears(registers, at + _DMASR, _HALTED):
                 raise BoardError(f"{channel} of the DMA does not start")
+
+    def _make_rings(self, registers: Registers, buffer: Buffer) -> None:
+        """Lay out the rings, arm that of S2MM, and tell the DMA where each begins."""
+        each = descriptors.BYTES + self._part_bytes
+        count = min(_MOST_DESCRIPTORS, buffer.size // (2 * each))
+        if count < 2:
+            raise BoardError(
+                f"'{buffer.name}' has {buffer.size} bytes, and {4 * each} are needed for a DMA "
+                "with a scatter-gather engine: 2 descriptors and buffers in each direction"
+            )
+        start, parts = 0, 2 * count * descriptors.BYTES
+        for channel, at in _AT.items():
+            ring = descriptors.Ring(buffer, start, parts, count, self._part_bytes)
+            start, parts = start + count * descriptors.BYTES, parts + count * self._part_bytes
+            self._rings[channel] = ring
+            # A DMA with addresses of 32 bits has no upper half.
+            registers.write(at + _CURDESC_MSB, 0xFFFF_FFFF)
+            self._has_high_addresses = bool(registers.read(at + _CURDESC_MSB))
+            self._write_pointer(registers, at + _CURDESC, ring.first)
+        while self._rings["S2MM"].has_room:
+            self._arm_to_receive(buffer)
+
+    def _write_pointer(self, registers: Registers, at: int, address: int) -> None:
+        """Write a pointer to a descriptor. Its upper half is last, as that starts the engine."""
+        if address >> 32 and not self._has_high_addresses:
+            raise _too_few_bits(address)
+        registers.write(at, address & 0xFFFF_FFFF)
+        if self._has_high_addresses:
+            registers.write(at + 4, address >> 32)
+
+    def _move_tail(self, channel: Channel) -> None:
+        """Let the DMA have what was armed."""
+        last = self._rings[channel].last
+        self._write_pointer(self._there()[0], _AT[channel] + _TAILDESC, last)
+
+    def _arm_to_receive(self, buffer: Buffer) -> None:
+        ring = self._rings["S2MM"]
+        buffer.to_device(ring.next_buffer, self._part_bytes, is_written=True)
+        ring.arm(self._most)
 
     def fileno(self) -> int:
         return self._there()[0].fileno()
@@ -197,7 +257,7 @@ class ZynqBoard(Board):
                 self._send_waiting()
                 if not self._has_completed("S2MM"):
                     break
-                frames.append(self._received())
+                frames += self._taken() if self._rings else [self._received()]
             registers.enable_interrupt()
         except BoardError:
             # The next call says it again.
@@ -226,13 +286,50 @@ class ZynqBoard(Board):
         """
         registers, at = self._there()[0], _AT[channel] + _DMASR
         status = registers.read(at)
-        if status & (_HALTED | sum(_ERRORS)):
+        if self._is_split or status & (_HALTED | sum(_ERRORS)):
             self.counters["DMA errors"] += not self._has_stopped
             self._has_stopped = True
+            if self._is_split:
+                raise BoardError(
+                    f"a frame was longer than its buffer, which has {self._most} bytes as in the "
+                    "description, or the DMA has lengths of too few bits"
+                )
             raise BoardError(f"the DMA has stopped ({_problems(registers)}), and is reset")
         if status & _IOC_IRQ:
             registers.write(at, _IOC_IRQ)
         return bool(status & _IOC_IRQ)
+
+    def _taken(self) -> list[bytes]:
+        """Return the frames that have come, and let the DMA have their descriptors again."""
+        ring, buffer, frames = self._rings["S2MM"], self._there()[1], list[bytes]()
+        # What is armed here cannot complete before the tail moves, so this ends.
+        while not self._is_split and (done := ring.completed()):
+            start, size, status = done
+            self._is_split = status & descriptors.WHOLE != descriptors.WHOLE
+            if not self._is_split:
+                buffer.to_processor(start, _aligned(size))
+                frames.append(bytes(buffer.data[start : start + size]))
+                self._arm_to_receive(buffer)
+        if frames:
+            self._move_tail("S2MM")
+        return frames
+
+    def _send_in_ring(self) -> None:
+        """Send what waits, as far as descriptors are free."""
+        ring, buffer = self._rings["MM2S"], self._there()[1]
+        if self._has_completed("MM2S"):
+            while ring.completed():
+                pass
+        is_armed = False
+        while self._waiting and ring.has_room:
+            frame, start = self._waiting.popleft(), ring.next_buffer
+            self._waiting_bytes -= len(frame)
+            buffer.data[start : start + len(frame)] = frame
+            buffer.to_device(start, _aligned(len(frame)), is_written=False)
+            ring.arm(descriptors.WHOLE | len(frame))
+            is_armed = True
+        if is_armed:
+            self._move_tail("MM2S")
 
     def _received(self) -> bytes:
         """Return the frame that has come, after the DMA got the other part."""
@@ -252,6 +349,9 @@ class ZynqBoard(Board):
 
     def _send_waiting(self) -> None:
         """Send what waits until a frame is under way; the DMA is often faster than this loop."""
+        if self._rings:
+            self._send_in_ring()
+            return
         buffer = self._there()[1]
         while not self._sends or self._has_completed("MM2S"):
             self._sends = bool(self._waiting)
@@ -271,12 +371,16 @@ class ZynqBoard(Board):
         if high := address >> 32:
             registers.write(at + _ADDRESS_MSB, high)
             if registers.read(at + _ADDRESS_MSB) != high:
-                raise BoardError(f"the DMA has too few bits for the address {address:#x}")
+                raise _too_few_bits(address)
         registers.write(at + _LENGTH, size)
 
 
 def _aligned(size: int) -> int:
     return -(-size // _ALIGNMENT) * _ALIGNMENT
+
+
+def _too_few_bits(address: int) -> BoardError:
+    return BoardError(f"the DMA has too few bits for the address {address:#x}")
 
 
 def _problems(registers: Registers) -> str:

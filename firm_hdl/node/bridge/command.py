@@ -26,7 +26,7 @@ from firm_hdl.terminal import stage
 if TYPE_CHECKING:
     from firm_hdl.sim.fast import EngineName
 
-__all__ = ["Status", "account", "run_bridge", "status_line"]
+__all__ = ["StatusPrinter", "account", "run_bridge", "status_line"]
 
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 """Ctrl-C, `kill`, and a terminal that is closed: peers are told that the node leaves."""
@@ -60,7 +60,7 @@ def run_bridge(
     """
     clock = time.time_ns if phc is None else ptp_clock(phc)
     joined = graph_of(graph, description, domain=domain, interface=interface)
-    status = Status(sys.stderr, quiet=quiet)
+    status = StatusPrinter(sys.stderr, quiet=quiet)
     simulation: dict[str, Any] = {"engine": engine}
     if wave is not None and board != "sim":
         raise UserError(f"the board {board} has no waveform; '--wave' goes with --board sim")
@@ -147,7 +147,7 @@ _LINK_SIGNS = ("late", "cut", "stray", "malformed")
 """The same of a board's link, which counts the messages as lost when the next one comes."""
 
 
-class Status:
+class StatusPrinter:
     """Print what happens, and a line of figures.
 
     On a terminal, the line is replaced each second. Elsewhere, it is printed every 10 s.

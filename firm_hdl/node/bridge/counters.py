@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from firm_hdl.node.capacity import bytes_on_link
-from firm_hdl.node.description import Description, Direction, Topic
+from firm_hdl.node.description import Description, Topic, Way
 
 __all__ = ["CAUSES", "BridgeCounters", "Load"]
 
@@ -61,11 +61,11 @@ class Load:
 
     def __init__(self, description: Description, bytes_per_second: float | None) -> None:
         self._description, self._carries = description, bytes_per_second
-        self._bytes: dict[Direction, Counter[str]] = {"in": Counter(), "out": Counter()}
+        self._bytes: dict[Way, Counter[str]] = {"in": Counter(), "out": Counter()}
         self._since: float | None = None
-        self._said: set[Direction] = set()
+        self._said: set[Way] = set()
 
-    def add(self, direction: Direction, topic: Topic, packet: bytes) -> None:
+    def add(self, direction: Way, topic: Topic, packet: bytes) -> None:
         """Count a message: `in` is the way to the board."""
         self._bytes[direction][topic.name] += bytes_on_link(self._description, len(packet))
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Literal
 
 from firm_hdl.gateware.members import member_tree
-from firm_hdl.node.description import Description, Topic
+from firm_hdl.node.description import Description, Topic, Way
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports
-from firm_hdl.plan import Leaf, build_plan
-from firm_hdl.wire import lay_out
+from firm_hdl.plan import Leaf
 
 __all__ = ["AcceleratorStream", "accelerator_streams", "by_message", "described", "members_text"]
 
@@ -23,7 +21,7 @@ class AcceleratorStream:
     topic: Topic
     message: str  # Name of the message, such as `std_srvs/srv/Trigger_Request`.
     member: str  # The member of the accelerator, such as `subscribe.cmd_vel.linear.x`.
-    direction: Literal["in", "out"]  # The way of its data.
+    direction: Way  # That of its data.
     type: str  # What it carries, for people.
     ports: tuple[AcceleratorPort, ...]  # Data, perhaps `last`, then `valid` and `ready`.
 
@@ -42,23 +40,16 @@ def _streams(description: Description) -> Iterator[AcceleratorStream]:
     for port in accelerator_ports(description):
         by_stream.setdefault(port.member.rpartition(".")[0], []).append(port)
     for topic in description.topics:
-        for direction, store in topic.stores:
-            base = f"{topic.kind}.{topic.port}"
-            if topic.kind == "serve":
-                base += ".request" if direction == "in" else ".response"
-            plan = build_plan(
-                lay_out(store.message, description.wire),
-                bus_bytes=description.bus_bytes,
-                max_message_bytes=store.max_message_bytes,
-            )
+        for way, store in topic.stores:
+            plan = description.plan(store)
             for index, path in member_tree(leaf.path for leaf in plan.leaves).leaves():
-                member = ".".join((base, *path))
+                member = ".".join((*topic.path(way), *path))
                 # The data of `items` is a member of its payload.
                 yield AcceleratorStream(
                     topic=topic,
                     message=store.message.name,
                     member=member,
-                    direction=direction,
+                    direction=way,
                     type=described(plan.leaves[index]),
                     ports=tuple(by_stream[member]),
                 )

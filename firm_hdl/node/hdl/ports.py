@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 from firm_hdl.export.component import ComponentPort
+from firm_hdl.export.ports import PlainPort, vhdl_type
 from firm_hdl.node.description import Description
 from firm_hdl.node.node import Node
 from firm_hdl.node.top import node_ports
@@ -19,12 +19,9 @@ __all__ = ["AcceleratorPort", "accelerator_ports", "outer_ports"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AcceleratorPort:
+class AcceleratorPort(PlainPort):
     """A port of an accelerator: a plain vector, or a record."""
 
-    name: str
-    direction: Literal["in", "out"]
-    width: int  # Width in bits.
     signed: bool = False  # The bits are those of a signed number.
     # The member of the accelerator in Amaranth, such as `subscribe.cmd_vel.linear.x.data`; empty
     # for clock and reset.
@@ -37,9 +34,7 @@ class AcceleratorPort:
     @property
     def vhdl_type(self) -> str:
         """The type in VHDL."""
-        if self.type or self.width == 1:
-            return self.type or "std_logic"
-        return f"std_logic_vector({self.width - 1} downto 0)"
+        return self.type or vhdl_type(self.width)
 
 
 def accelerator_ports(description: Description) -> tuple[AcceleratorPort, ...]:

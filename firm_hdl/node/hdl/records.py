@@ -17,7 +17,7 @@ from firm_hdl.export.systemverilog.wrapper import leaf_actual
 from firm_hdl.export.tree import Tree
 from firm_hdl.export.vhdl.layer import shared_packages as record_packages
 from firm_hdl.export.vhdl.values import values_of
-from firm_hdl.export.vhdl.wrapper import Conversions, Core, entity_around
+from firm_hdl.export.vhdl.wrapper import Conversions, Core, Line, entity_around
 from firm_hdl.node.description import Description
 from firm_hdl.node.hdl.ports import AcceleratorPort, accelerator_ports, outer_ports
 from firm_hdl.node.records import found_messages
@@ -187,7 +187,7 @@ def _vhdl(
         # What a conversion has as a signal is a port here.
         assignments += made.assignments
     lines = [
-        (port.name, f"{port.direction:3} {port.vhdl_type}", f"{port.member or port.name}.")
+        Line(port.name, port.direction, port.vhdl_type, f"{port.member or port.name}.")
         for port in plain
     ]
     core = Core(entity=own, names={})
@@ -203,10 +203,7 @@ def _systemverilog(
     found: Sequence[AcceleratorPort],
 ) -> Iterator[str]:
     heads = [
-        f"  {port.direction + 'put':6} logic "
-        + ("" if port.width == 1 else f"[{port.width - 1}:0] ")
-        + port.name
-        for port in plain
+        f"  {port.direction + 'put':6} logic {port.verilog_range}{port.name}" for port in plain
     ]
     yield f"\nmodule {entity} (\n" + ",\n".join(heads) + "\n);\n"
     yield from (f"  {port.type} {port.name};\n" for port in found if port.type)

@@ -150,8 +150,8 @@ def _declaration(port: AcceleratorPort, language: str, width: int) -> str:
         return f"{port.name:<{width}} : {port.direction:<3} {port.vhdl_type}"
     kind = "wire" if language == "verilog" else "logic"
     kind += " signed" if port.signed else ""
-    kind += f" [{port.width - 1}:0]" if port.width > 1 else ""
-    return f"{port.direction + 'put':<6} {port.type or kind} {port.name}"
+    kind = f"{port.type} " if port.type else f"{kind} {port.verilog_range}"
+    return f"{port.direction + 'put':<6} {kind}{port.name}"
 
 
 def _file(

@@ -1,4 +1,5 @@
 """Projects that put a node into a chip beside its processor: a block design of Vivado, and Linux.
+:mod:`.converters` puts those of a type into a SoC of LiteX.
 
 What Linux and ``xmutil`` take is in the manual of dfx-mgr and in AMD's firmware of the Kria. No
 tool of AMD has read what is written here.
@@ -23,8 +24,17 @@ from firm_hdl.files import write_new
 from firm_hdl.node.build import design_name
 from firm_hdl.node.description import Description
 from firm_hdl.node.projects.notebook import notebook
+from firm_hdl.node.register_map import register_map
 
-__all__ = ["BOARDS", "EXAMPLE", "ProjectBoard", "board_named", "write_project"]
+__all__ = [
+    "BOARDS",
+    "EXAMPLE",
+    "ProjectBoard",
+    "board_named",
+    "render",
+    "write_folder",
+    "write_project",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,8 +79,9 @@ publish:
 
 
 def board_named(name: str) -> str:
-    """Return the key of a board in `BOARDS`; raises `UserError` if there is none."""
+    """Return the key of a board in `BOARDS`, or ``litex``; raises `UserError` if it is neither."""
     known = {word: key for key, each in BOARDS.items() for word in (key, *each.names)}
+    known["litex"] = "litex"
     if name.lower() in known:
         return known[name.lower()]
     close = get_close_matches(name.lower(), known, n=1, cutoff=0.5)
@@ -117,9 +128,13 @@ def write_project(
         "node_word": shlex.quote(node),
         "node_file": shlex.quote(os.path.basename(node)),
         "has_accelerator": bool(description.accelerator),
+        # Bits of an address of the node's own registers; 0: it has none on AXI.
+        "register_bits": register_map(description).address_bits
+        if description.registers == "axi4lite"
+        else 0,
     }
     files = {
-        template.rpartition("/")[2].replace("NAME", name): _render(template, **values)
+        template.rpartition("/")[2].replace("NAME", name): render(template, **values)
         for template in ("design.tcl", *about.files)
     }
     if board == "pynq":
@@ -127,11 +142,15 @@ def write_project(
         files[f"{name}.ipynb"] = json.dumps(cells, indent=1, ensure_ascii=False) + "\n"
     if file is None:
         files["node.yaml"] = EXAMPLE
-    _write(out, files)
+    write_folder(out, files)
     return out
 
 
-def _write(folder: Path, files: dict[str, str]) -> None:
+def write_folder(folder: Path, files: dict[str, str]) -> None:
+    """Write files into a new folder, all or none.
+
+    Raises `UserError` if the folder exists, or cannot be written.
+    """
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir()
@@ -160,5 +179,6 @@ _templates = Environment(
 )
 
 
-def _render(template: str, **values: Any) -> str:
+def render(template: str, **values: Any) -> str:
+    """Return the text of a template beside this module, whose name lacks its ``.j2``."""
     return _templates.get_template(f"{template}.j2").render(values)

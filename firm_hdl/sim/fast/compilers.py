@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import os
-import re
 import shlex
 import threading
 import time
@@ -23,7 +22,12 @@ import jinja2
 from firm_hdl.garbage import search_put_off
 from firm_hdl.jobs import ToolError, made_by, run_tool
 from firm_hdl.jobs.caches import cache_folder, kept_program
-from firm_hdl.jobs.programs import find_compiler, find_verilator
+from firm_hdl.jobs.programs import (
+    find_compiler,
+    find_verilator,
+    verilator_headers,
+    verilator_sources,
+)
 from firm_hdl.rtlil import convert_fragment
 from firm_hdl.sim.fast.top import Top
 from firm_hdl.verilog import convert
@@ -174,7 +178,7 @@ class _Build:
         """Return the libraries that compress FST, once a program of one line has been linked."""
         names = {"z": "zlib.h"}
         try:
-            if (_headers(self.verilator, folder) / "fstcpp").exists():
+            if (verilator_headers(self.verilator) / "fstcpp").exists():
                 # Newer versions of Verilator do not bring their own lz4.
                 names["lz4"] = "lz4.h"
         except ToolError as error:
@@ -296,12 +300,7 @@ def translate(
     options = [*_OPTIONS, *_TRACES[source.traced]]
     run_tool([*verilator, *options, "design.v", *source.modules], folder)
     makefile = made_by("Verilator", folder / f"{_PREFIX}_classes.mk").read_text(encoding="utf-8")
-    # Which parts of the runtime a model needs depends on the version.
-    parts = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", makefile, re.MULTILINE)
-    if not parts:
-        raise ToolError("Verilator did not say which parts of its runtime a model needs")
-    headers = _headers(verilator, folder)
-    runtime = [headers / f"{part}.cpp" for part in parts[1].replace("\\", " ").split()]
+    runtime = verilator_sources(verilator, makefile)
     files = sorted(folder.glob("*.cpp"))
     if "VM_PARALLEL_BUILDS = 0" in makefile:
         # A small design, whose files Verilator did not split: most of the time goes into headers.
@@ -312,11 +311,4 @@ def translate(
         files = [folder / name for name in texts]
         for path in files:
             path.write_text(texts[path.name], encoding="utf-8")
-    return [*files, *runtime], headers
-
-
-def _headers(verilator: tuple[str, ...], folder: Path) -> Path:
-    """Return the folder of the headers of Verilator's runtime."""
-    if not (root := run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()):
-        raise ToolError("Verilator did not say where its runtime is")
-    return Path(root, "include")
+    return [*files, *runtime], runtime[0].parent

@@ -9,7 +9,7 @@ from typing import Any
 from amaranth.hdl import Const, Elaboratable, Shape, ShapeCastable, Value
 from amaranth.lib import stream, wiring
 
-from firm_hdl.sim.watch import bus_bytes_of
+from firm_hdl.gateware.signatures import bus_bytes_of
 
 __all__ = ["PlainPort", "Ports", "StreamPort", "bytes_of", "ports_of"]
 
@@ -189,7 +189,7 @@ def _stream(name: str, port: stream.Interface, *, is_input: bool) -> StreamPort:
     if is_input and isinstance(port.valid, Const):
         raise ValueError(f"Stream {name!r} is an input that is always valid")
     return StreamPort(
-        number=0, name=name, is_input=is_input, port=port, bus_bytes=bus_bytes_of(port)
+        number=0, name=name, is_input=is_input, port=port, bus_bytes=bus_bytes_of(port.payload)
     )
 
 

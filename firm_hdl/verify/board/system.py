@@ -15,11 +15,10 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
 from typing import Any, cast
 
 from firm_hdl.cases import NotJudgedError
-from firm_hdl.cases.damage import DAMAGES, broken_packets
+from firm_hdl.cases.damage import broken_and_good
 from firm_hdl.cases.directed import bare_packets
 from firm_hdl.cases.effort import all_cases, digest, figures
 from firm_hdl.cases.make import Case
@@ -39,9 +38,9 @@ from firm_hdl.verify.board.talk import Talk, TalkError
 from firm_hdl.verify.references.clients import find_references, may_stand_in
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
-from firm_hdl.verify.systems.options import Options, Request
-from firm_hdl.verify.systems.system import Made, System, Trial, counted, failure_of, kept
+from firm_hdl.verify.results.verdict import NotJudged
+from firm_hdl.verify.systems.options import CaseOptions, Request
+from firm_hdl.verify.systems.system import Made, System, Trial, failure_of, run_and_record
 from firm_hdl.verify.ts3.acceptance import confirm_cases
 from firm_hdl.verify.ts3.compare import packet_differences
 from firm_hdl.verify.ts3.task import command_of, words_of
@@ -79,7 +78,7 @@ def judge_loop(
     talk: Talk,
     description: Description,
     loop: tuple[Topic, Topic],
-    options: Options,
+    options: CaseOptions,
     trial: Trial,
 ) -> None:
     """Send the cases of a type through a board, and add to the trial.
@@ -121,7 +120,7 @@ def judge_loop(
     trial.watch.enter("testing")
 
 
-def _judge_of(message: Message, distro: str, options: Options) -> Judge:
+def _judge_of(message: Message, distro: str, options: CaseOptions) -> Judge:
     """Return the oracle: rosbags' own definition, if the type is that of the distribution."""
     try:
         is_own = Library(distro).message(message.name) == message
@@ -159,10 +158,8 @@ def _good_run(plan: Plan, cases: Sequence[Case]) -> _Run:
 
 def _damaged_run(plan: Plan, cases: Sequence[Case], rng: random.Random, room: int) -> _Run:
     """Damaged packets, each followed by a good one, as in TS3."""
-    sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
     # What has no room is dropped as large; that is no damage.
-    broken = [packet[:room] for packet in broken_packets(plan, sample, rng)]
-    packets = list(chain.from_iterable(zip(broken, (c.packet for c in sample), strict=True)))
+    packets = broken_and_good(plan, cases, rng, room)
     statuses: list[str] = []
     answers: list[bytes | None] = []
     for packet in packets:
@@ -345,18 +342,9 @@ class Boards(System):
             "references": None if request.references is None else list(request.references),
         }
 
-    def run(self, writer: ResultsWriter | None) -> list[Record]:
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
         """Open the board, and send the types that have no record."""
-        records = kept(self.tests, writer, self._records, self._lines, label="board")
-        for verdict in (Passed, KnownDifference, Failed, NotJudged):
-            found = [each for each in records if isinstance(each.verdict, verdict)]
-            if found:
-                packets = sum(each.packets for each in found)
-                print(
-                    f"board {self._board.name}: {len(found)} of {len(records)} types "
-                    f"{verdict.name}, {packets} packets sent"
-                )
-        return counted(records)
+        return run_and_record(self.tests, writer, self._records, self._lines, label="board")
 
     def _records(self, left: Sequence[Test]) -> Made:
         if not left:
@@ -409,7 +397,9 @@ class Boards(System):
             same=(description.distro,),
             wire=description.wire,
             bus_bytes=description.bus_bytes,
-            options=",".join([f"board={request.board}", *words_of(options, *node)]),
+            options=",".join(
+                [f"board={request.board}", *words_of(options, *node), *options.folders]
+            ),
         )
 
     def _command(self) -> str:

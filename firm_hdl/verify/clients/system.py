@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -40,12 +40,11 @@ from firm_hdl.verify.systems.options import Request, command_again
 from firm_hdl.verify.systems.system import (
     Trial,
     TypesSystem,
-    counted,
+    as_test,
     failure_of,
-    kept,
-    print_passes,
-    recorded,
+    run_and_record,
     run_tests,
+    summary_of,
     wire_of,
 )
 from firm_hdl.verify.systems.tasks import library_of
@@ -210,6 +209,7 @@ class Libraries(TypesSystem):
     """
 
     name = "sut"
+    passes = "types agree"
 
     def __enter__(self) -> Libraries:
         request = self._request
@@ -246,14 +246,7 @@ class Libraries(TypesSystem):
         words = [f"seed={request.seed}"]
         words += [] if request.most_cases is None else [f"cases={request.most_cases}"]
         return [
-            Test(
-                system=f"sut {library}",
-                distro=task.distro,
-                type=task.name,
-                same=task.same,
-                wire=wire,
-                options=",".join([*words, *request.folders]),
-            )
+            as_test(f"sut {library}", task, request, *words, bus_bytes=0)
             for task in self._tasks
             for wire in [wire_of(task.distro, request.wire)]
             for library in request.libraries
@@ -265,10 +258,10 @@ class Libraries(TypesSystem):
         """The libraries and references with their versions."""
         return {"libraries": [f"{name} {version}" for name, version in self._versions.items()]}
 
-    def run(self, writer: ResultsWriter | None) -> list[Record]:
-        """Judge the libraries on all types, and print a summary of each."""
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
+        """Judge the libraries on all types."""
         request = self._request
-        records = kept(
+        return run_and_record(
             self.tests,
             writer,
             lambda left: run_tests(
@@ -282,12 +275,14 @@ class Libraries(TypesSystem):
             lambda record: failure_of(record.test.title, record),
             label="client libraries",
         )
-        for name in request.libraries:
+
+    def summary(self, records: Sequence[Record], seconds: float) -> Iterator[str]:
+        """Yield lines about each library."""
+        for name in self._request.libraries:
             own = [each for each in records if each.test.system == f"sut {name}"]
             compared = round(sum(each.metrics.get("comparisons", 0) for each in own))
-            print(f"{name} {self._versions[name]}: {compared} comparisons")
-            print_passes(own, "types agree")
-        return counted(records)
+            yield f"{name} {self._versions[name]}: {compared} comparisons"
+            yield from summary_of(own, self.passes, seconds)
 
     def _again(self, test: Test) -> str:
         request = self._request
@@ -307,8 +302,7 @@ def judge_library(given: tuple[Request, Sequence[str]], test: Test) -> Record:
     """Judge a library on a type, by the first of some references that has the type."""
     request, installed = given
     library = test.system.removeprefix("sut ")
-
-    def run(trial: Trial) -> None:
+    with Trial.of(test) as trial:
         try:
             message = library_of(test.distro, request).message(test.type)
             wire = request.wire or message.wire
@@ -320,11 +314,11 @@ def judge_library(given: tuple[Request, Sequence[str]], test: Test) -> Record:
         for reference in _references(library, wire, installed):
             trial.obstacle = None
             if compare(client(library), client(reference), message, wire, values, trial):
-                return
+                break
             first = first or trial.obstacle
-        trial.obstacle = first or NotJudged(f"no reference for {wire} is installed")
-
-    return recorded(test, run)
+        else:
+            trial.obstacle = first or NotJudged(f"no reference for {wire} is installed")
+    return trial.end()
 
 
 @lru_cache(maxsize=1)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar, TypeVar
 
 from firm_hdl.cases.values import Plain
+from firm_hdl.errors import UserError
 from firm_hdl.model import Message
 from firm_hdl.wire import Wire
 
@@ -39,7 +40,7 @@ class Refusal(Exception):  # noqa: N818 - it is an answer, which may be right.
         return hash(Refusal)
 
 
-class ClientMissingError(Exception):
+class ClientMissingError(UserError):
     """A library that was asked for is not installed; the text says how to get it."""
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from firm_hdl.drawing.svg import Figure, Scale, number, seconds, spread
-from firm_hdl.verify.report.summary import Box, Counts, Curve, Fit, Trend
+from firm_hdl.verify.report.summary import Box, Curve, Fit, Trend
 from firm_hdl.verify.results.records import STAGES
+from firm_hdl.verify.results.verdict import Counts
 
 __all__ = ["colour", "counts_bar", "cumulative", "law_text", "line_text", "scatter", "stages"]
 

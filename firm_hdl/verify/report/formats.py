@@ -19,13 +19,12 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from firm_hdl.drawing.document import pages, style
-from firm_hdl.export.build import BuildError
+from firm_hdl.errors import UserError
 from firm_hdl.files import write_file
 from firm_hdl.verify.report import charts, tables
 from firm_hdl.verify.report import tables as prose
 from firm_hdl.verify.report.charts import counts_bar
 from firm_hdl.verify.report.summary import (
-    NotRun,
     Outcome,
     Summary,
     failures_of,
@@ -33,8 +32,9 @@ from firm_hdl.verify.report.summary import (
     summarise,
 )
 from firm_hdl.verify.report.tables import Table, TableCell
-from firm_hdl.verify.results.file import ResultsError, read_results
+from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import to_json as record_to_json
+from firm_hdl.verify.results.verdict import NotRun
 
 __all__ = ["FORMATS", "add_report", "run_report", "write_report"]
 
@@ -196,7 +196,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
 def run_report(given: argparse.Namespace) -> None:
     """Run ``firm-hdl report``.
 
-    Raises `BuildError` if a file is not one of results.
+    Raises `UserError` if a file is not one of results.
     """
     form = given.format
     if given.out is None:
@@ -216,24 +216,21 @@ def write_report(
 
     * `form`: a key of `FORMATS`; `None`: the suffix of `out`.
 
-    Raises `BuildError` if a file is not one of results, or if the suffix of `out` is not a key of
+    Raises `UserError` if a file is not one of results, or if the suffix of `out` is not a key of
     `FORMATS`.
     """
     path = Path(out)
     form = form or path.suffix.lstrip(".").lower()
     if form not in FORMATS:
         ends = ", ".join(f".{name}" for name in FORMATS)
-        raise BuildError(f"'{out}': the name of a report must end in {ends}, or give --format")
+        raise UserError(f"'{out}': the name of a report must end in {ends}, or give --format")
     for each in results:
         if path.exists() and path.samefile(each):
-            raise BuildError(f"'{out}' is one of the results; the report needs another name")
+            raise UserError(f"'{out}' is one of the results; the report needs another name")
     text = _made(results, form, title)
     write_file(path, text)
 
 
 def _made(results: Sequence[str | os.PathLike[str]], form: str, title: str) -> str:
-    try:
-        found = {str(path): read_results(path) for path in results}
-    except ResultsError as error:
-        raise BuildError(str(error)) from None
+    found = {str(path): read_results(path) for path in results}
     return FORMATS[form](summarise(found, title))

@@ -10,33 +10,42 @@ to their logarithms. R² is computed in the space of the fit: of the figures or 
 
 from __future__ import annotations
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from firm_hdl.verify.results.file import Results
+from firm_hdl.verify.results.oracles import (
+    OracleSum,
+    Remark,
+    oracle_sums,
+    remarks_of,
+    without_names,
+)
 from firm_hdl.verify.results.records import STAGES, Record, Test, settled
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed, Verdict
+from firm_hdl.verify.results.verdict import (
+    Counts,
+    Failed,
+    NotJudged,
+    NotRun,
+    Verdict,
+)
 
 __all__ = [
     "LIMITS",
     "Box",
     "Correlation",
-    "Counts",
     "Curve",
     "Fit",
     "Group",
-    "NotRun",
     "Outcome",
     "Summary",
     "Trend",
     "box_of",
     "correlate",
-    "count",
     "curve_of",
     "failures_of",
     "outcomes_of",
@@ -156,15 +165,6 @@ def _ranks(values: np.ndarray) -> np.ndarray:
     return np.asarray(((ends - counts + ends + 1) / 2)[which])
 
 
-@dataclass(frozen=True, slots=True)
-class NotRun:
-    """A test has no result."""
-
-    name: ClassVar[str] = "not run"
-
-    reason: str = "there is no result of it"
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
     """The outcome of a test."""
@@ -174,45 +174,6 @@ class Outcome:
     record: Record | None
     # Name of the type whose equal circuit was simulated instead of the circuit of this type.
     circuit_of: str = ""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Counts:
-    """The number of tests of each outcome. Tests with a known difference do not count as passed."""
-
-    passed: int = 0
-    known: int = 0
-    failed: int = 0
-    not_judged: int = 0
-    not_run: int = 0
-
-    @property
-    def total(self) -> int:
-        """The number of all tests."""
-        return self.passed + self.known + self.failed + self.not_judged + self.not_run
-
-    @property
-    def verdict(self) -> str:
-        """The name of the worst outcome; ``not judged`` only if nothing was judged."""
-        if self.failed:
-            return Failed.name
-        if self.not_run or not self.total:
-            return NotRun.name
-        if self.passed:
-            return Passed.name
-        return KnownDifference.name if self.known else NotJudged.name
-
-
-def count(outcomes: Iterable[Outcome]) -> Counts:
-    """Count outcomes."""
-    found = Counter(outcome.verdict.name for outcome in outcomes)
-    return Counts(
-        passed=found[Passed.name],
-        known=found[KnownDifference.name],
-        failed=found[Failed.name],
-        not_judged=found[NotJudged.name],
-        not_run=found[NotRun.name],
-    )
 
 
 def failures_of(outcome: Outcome) -> tuple[str, ...]:
@@ -239,13 +200,9 @@ def outcomes_of(files: Sequence[Results]) -> list[Outcome]:
 def _outcome(test: Test, record: Record | None, records: Mapping[str, Record]) -> Outcome:
     if record is None:
         return Outcome(test=test, verdict=NotRun(), record=None)
-    verdict: Verdict | NotRun = settled(record, records)
-    if isinstance(record.verdict, Failed | NotJudged) or not record.same_as:
-        return Outcome(test=test, verdict=verdict, record=record)
+    verdict = settled(record, records)
     other = records.get(record.same_as)
     circuit_of = record.same_as if other is None else other.test.type
-    if other is None:
-        verdict = NotRun(f"has the circuit of {circuit_of}, which was not run")
     return Outcome(test=test, verdict=verdict, record=record, circuit_of=circuit_of)
 
 
@@ -428,9 +385,10 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
     suites: dict[str, list[Outcome]] = defaultdict(list)
     for outcome in outcomes:
         suites[_suite(outcome)].append(outcome)
+    records = [each.record for each in outcomes if each.record is not None]
     return Summary(
         title=title,
-        counts=count(outcomes),
+        counts=Counts.of(each.verdict for each in outcomes),
         by_suite=_groups((outcome, (_suite(outcome),)) for outcome in outcomes),
         by_distro=_groups(
             (outcome, (_suite(outcome), distro))
@@ -452,8 +410,8 @@ def summarise(files: Mapping[str, Results], title: str = "Verification of firm-h
         coverage=tuple(
             found for suite, own in suites.items() if (found := _coverage(suite, own)).types
         ),
-        oracles=oracle_sums(outcomes),
-        said=remarks_of(outcomes),
+        oracles=oracle_sums(records),
+        said=remarks_of(records),
         runs=tuple(_run(name, results) for name, results in files.items()),
     )
 
@@ -471,7 +429,7 @@ def _groups(labelled: Iterable[tuple[Outcome, tuple[str, ...]]]) -> tuple[Group,
     return tuple(
         Group(
             labels=labels,
-            counts=count(own),
+            counts=Counts.of(each.verdict for each in own),
             cpu_seconds=sum(o.record.cpu_seconds for o in own if o.record is not None),
         )
         for labels, own in sorted(found.items())
@@ -564,81 +522,11 @@ def _run(name: str, results: Results) -> RunSummary:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OracleSum:
-    """The verdicts of an oracle on the definitions of a distribution."""
-
-    distro: str
-    oracle: str
-    # Numbers of definitions. `refused` are those among `agree` that firm-hdl and the oracle refuse.
-    agree: int = 0
-    refused: int = 0
-    known: int = 0
-    differ: int = 0
-    not_judged: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Remark:
-    """A known difference from an oracle, or a reason why the oracle did not judge."""
-
-    oracle: str
-    verdict: str  # `known difference` or `not judged`.
-    what: str  # Key of a known difference, or a reason.
-    count: int  # The number of definitions.
-    example: str  # Name of one of these definitions.
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Reason:
     """Tests with the same text, apart from names and numbers."""
 
     text: str  # The text of the first of these tests.
     outcomes: tuple[Outcome, ...]
-
-
-def oracle_sums(outcomes: Iterable[Outcome]) -> tuple[OracleSum, ...]:
-    """Count verdicts by distribution and oracle."""
-    counts: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
-    for outcome in outcomes:
-        for each in outcome.record.verdicts if outcome.record is not None else ():
-            found = counts[outcome.test.distro, each.oracle]
-            found[each.verdict.name] += 1
-            found["refused"] += each.is_refused
-    return tuple(
-        OracleSum(
-            distro=distro,
-            oracle=oracle,
-            agree=found[Passed.name],
-            refused=found["refused"],
-            known=found[KnownDifference.name],
-            differ=found[Failed.name],
-            not_judged=found[NotJudged.name],
-        )
-        for (distro, oracle), found in sorted(counts.items())
-    )
-
-
-def remarks_of(outcomes: Iterable[Outcome]) -> tuple[Remark, ...]:
-    """List known differences and reasons not to judge, the most frequent of an oracle first."""
-    names: dict[tuple[str, str, str], list[str]] = defaultdict(list)
-    texts: dict[tuple[str, str, str], str] = {}
-    for outcome in outcomes:
-        for each in outcome.record.verdicts if outcome.record is not None else ():
-            for detail in () if isinstance(each.verdict, Failed) else each.verdict.details:
-                key = (each.oracle, each.verdict.name, _without_names(detail))
-                texts.setdefault(key, detail)
-                names[key].append(outcome.test.type)
-    ordered = sorted(names, key=lambda key: (key[0], key[1], -len(names[key]), key[2]))
-    return tuple(
-        Remark(
-            oracle=key[0],
-            verdict=key[1],
-            what=texts[key],
-            count=len(names[key]),
-            example=names[key][0],
-        )
-        for key in ordered
-    )
 
 
 def reason_groups(
@@ -652,7 +540,7 @@ def reason_groups(
     texts: dict[str, str] = {}
     for outcome in outcomes:
         text = (text_of or _reason_of)(outcome)
-        key = _without_names(text)
+        key = without_names(text)
         texts.setdefault(key, text)
         groups[key].append(outcome)
     found = [Reason(text=texts[key], outcomes=tuple(own)) for key, own in groups.items()]
@@ -662,8 +550,3 @@ def reason_groups(
 def _reason_of(outcome: Outcome) -> str:
     """Return why a test was not judged or not run; empty if it was judged."""
     return outcome.verdict.reason if isinstance(outcome.verdict, NotJudged | NotRun) else ""
-
-
-def _without_names(text: str) -> str:
-    """Return a text without the parts that differ between types: names with ``/``, and numbers."""
-    return re.sub(r"\d[\d,.]*", "0", re.sub(r"[^\s'\"]*/[^\s'\",;:]*", "...", text))

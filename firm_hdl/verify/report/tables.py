@@ -15,18 +15,23 @@ from firm_hdl.drawing.svg import number, seconds
 from firm_hdl.verify.report.charts import law_text, line_text
 from firm_hdl.verify.report.summary import (
     LIMITS,
-    Counts,
     Curve,
     Fit,
     Group,
-    NotRun,
     Outcome,
     Summary,
     Trend,
     failures_of,
 )
-from firm_hdl.verify.results.records import STAGES, Record
-from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
+from firm_hdl.verify.results.records import STAGES, Record, Test
+from firm_hdl.verify.results.verdict import (
+    Counts,
+    Failed,
+    KnownDifference,
+    NotJudged,
+    NotRun,
+    Passed,
+)
 
 __all__ = [
     "MOST_ROWS",
@@ -147,15 +152,9 @@ def cut(table: Table, most: int = MOST_ROWS) -> tuple[Table, str]:
     return Table(table.headings, table.rows[:most]), f"and {number(left)} more"
 
 
-def title_of(outcome: Outcome) -> str:
-    """Name a test in a line."""
-    test = outcome.test
-    circuit = [test.wire, f"{test.bus_bytes}-byte bus" if test.bus_bytes else "", test.options]
-    return ", ".join(
-        part
-        for part in (test.type, " ".join(test.distros), test.system, test.simulator, *circuit)
-        if part
-    )
+def title_of(test: Test) -> str:
+    """Name a test in a line, with all that tells it from others of a report."""
+    return ", ".join(filter(None, [test.title, test.simulator, test.wire, test.options]))
 
 
 def group_table(groups: Iterable[Group], names: str) -> Table:
@@ -214,7 +213,7 @@ def failure_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
     for outcome in outcomes:
         text = failures_of(outcome)[0]
         shown = text if len(text) <= MOST_TEXT else f"{text[:MOST_TEXT]}..."
-        yield title_of(outcome), shown, outcome.record.command if outcome.record else ""
+        yield title_of(outcome.test), shown, outcome.record.command if outcome.record else ""
 
 
 @_with("|".join(["Test system", "Tests#", *(f"{limit:g} s#" for limit in LIMITS)]))
@@ -311,7 +310,7 @@ def missing_table(outcomes: Iterable[Outcome]) -> Iterator[Row]:
     for outcome in outcomes:
         assert outcome.record is not None and outcome.record.coverage is not None
         names = "; ".join(outcome.record.coverage.missing)
-        yield title_of(outcome), _covered(outcome), names or "not named"
+        yield title_of(outcome.test), _covered(outcome), names or "not named"
 
 
 _ORDER = (Failed.name, NotRun.name, NotJudged.name, KnownDifference.name, Passed.name)

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 import firm_hdl
+from firm_hdl.errors import UserError
 from firm_hdl.files import read_file
 from firm_hdl.verify.results.records import Record, Test, from_json, to_json
 
@@ -48,7 +49,7 @@ _MOST_BYTES = 1 << 28
 _MOST_LINE_BYTES = 1 << 25
 
 
-class ResultsError(ValueError):
+class ResultsError(UserError):
     """A file contains no results, or the results of another run; the text names file and reason."""
 
 
@@ -278,7 +279,6 @@ PACKAGES = (
     "mcap-ros2-support",
     "numpy",
     "lark",
-    "distributed",
 )
 
 _INPUTS = (".msg", ".srv", ".action", ".idl", ".xml", ".yaml")
@@ -288,11 +288,8 @@ _MOST_INPUT_BYTES = 1 << 22
 """No definition is larger (`firm_hdl.frontend.sources`). Of a larger file, only the size counts."""
 
 
-def environment(**more: str) -> dict[str, str]:
-    """Return names and versions, none of which identifies a user or a machine.
-
-    * `**more`: further entries.
-    """
+def environment() -> dict[str, str]:
+    """Return names and versions, none of which identifies a user or a machine."""
     found = {
         "started": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         "firm-hdl": firm_hdl.__version__,
@@ -305,7 +302,7 @@ def environment(**more: str) -> dict[str, str]:
             found[name] = version(name)
         except PackageNotFoundError:
             continue
-    return {**found, **more}
+    return found
 
 
 def code_digest() -> str:

@@ -11,7 +11,7 @@ from dataclasses import MISSING, dataclass, field, fields
 from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Verdict, clipped
+from firm_hdl.verify.results.verdict import Failed, NotJudged, NotRun, Verdict, clipped
 
 __all__ = [
     "STAGES",
@@ -182,7 +182,7 @@ def clipped_verdict(verdict: Verdict) -> Verdict:
             return verdict
 
 
-def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
+def settled(record: Record, records: Mapping[str, Record]) -> Verdict | NotRun:
     """Return the verdict that counts. It depends on the test that simulated the circuit, too.
 
     * `records`: records of all tests, by key.
@@ -191,7 +191,7 @@ def settled(record: Record, records: Mapping[str, Record]) -> Verdict:
         return record.verdict
     other = records.get(record.same_as)
     if other is None:
-        return NotJudged(f"has the circuit of '{record.same_as}', of which there is no result")
+        return NotRun(f"has the circuit of '{record.same_as}', which was not run")
     if isinstance(other.verdict, NotJudged):
         return NotJudged(f"has the circuit of '{record.same_as}', which was not judged")
     if other.shape != record.shape:

@@ -1,4 +1,4 @@
-"""The four possible verdicts of a test system, and texts of them.
+"""The four possible verdicts of a test system, and how many tests have each.
 
 Only `Passed` is a pass. Each verdict needs its evidence, and cannot be made without it. A pass
 counts what was judged. A failure has a text. A missing judgement has a reason. A known difference
@@ -7,14 +7,17 @@ has a key, and counts what was compared without the known difference.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, TypeAlias
 
 __all__ = [
+    "Counts",
     "Failed",
     "KnownDifference",
     "NotJudged",
+    "NotRun",
     "Passed",
     "Verdict",
     "clipped",
@@ -112,6 +115,54 @@ class KnownDifference:
 
 
 Verdict: TypeAlias = Passed | Failed | NotJudged | KnownDifference
+
+
+@dataclass(frozen=True, slots=True)
+class NotRun:
+    """A test has no result, so it has no verdict."""
+
+    name: ClassVar[str] = "not run"
+
+    reason: str = "there is no result of it"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Counts:
+    """The number of tests of each outcome. Tests with a known difference do not count as passed."""
+
+    passed: int = 0
+    known: int = 0
+    failed: int = 0
+    not_judged: int = 0
+    not_run: int = 0
+
+    @classmethod
+    def of(cls, verdicts: Iterable[Verdict | NotRun]) -> Counts:
+        """Count verdicts."""
+        found = Counter(type(each) for each in verdicts)
+        return cls(
+            passed=found[Passed],
+            known=found[KnownDifference],
+            failed=found[Failed],
+            not_judged=found[NotJudged],
+            not_run=found[NotRun],
+        )
+
+    @property
+    def total(self) -> int:
+        """The number of all tests."""
+        return self.passed + self.known + self.failed + self.not_judged + self.not_run
+
+    @property
+    def verdict(self) -> str:
+        """The name of the worst outcome; ``not judged`` only if nothing was judged."""
+        if self.failed:
+            return Failed.name
+        if self.not_run or not self.total:
+            return NotRun.name
+        if self.passed:
+            return Passed.name
+        return KnownDifference.name if self.known else NotJudged.name
 
 
 def _check_cases(cases: int) -> None:

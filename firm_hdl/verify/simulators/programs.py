@@ -9,24 +9,22 @@ around a model of Verilator also needs Verilator's runtime, as objects.
 from __future__ import annotations
 
 import functools
-import re
 import tempfile
 from collections.abc import Callable, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any, Protocol
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
+from firm_hdl.export.templates import templates
 from firm_hdl.export.top import Top
 from firm_hdl.export.verilog import module_name
-from firm_hdl.jobs.processes import ToolError, made_by, run_tool
+from firm_hdl.jobs.processes import made_by, run_tool
 from firm_hdl.jobs.programs import (
     ProgramMissingError,
     find_compiler,
     find_ghdl,
     find_program,
     find_verilator,
+    verilator_sources,
     version_of,
     which,
 )
@@ -42,39 +40,25 @@ __all__ = [
     "TextSimulator",
     "Verilator",
     "runtime_of",
-    "runtime_parts",
     "simulator",
 ]
 
 
 class Runtime:
-    """Verilator's runtime and sources of our own, as objects that programs are linked with.
+    """Sources, such as those of Verilator's runtime, as objects that programs are linked with.
 
     * `options`: options of the compiler.
-    * `own`: our sources. Their folders are searched for headers.
-    * `parts`: sources of Verilator, from :func:`runtime_parts`.
+    * `sources`: their folders are searched for headers.
     """
 
-    def __init__(
-        self,
-        verilator: Sequence[str],
-        compiler: Sequence[str],
-        options: Sequence[str],
-        own: Sequence[Path],
-        parts: Sequence[str],
-    ):
+    def __init__(self, compiler: Sequence[str], options: Sequence[str], sources: Sequence[Path]):
         # Removed with this object, at the end of the process.
         self._folder = tempfile.TemporaryDirectory(prefix="firm-hdl-")
         folder = Path(self._folder.name)
-        root = run_tool([*verilator, "--getenv", "VERILATOR_ROOT"], folder).strip()
-        if not root:
-            raise ToolError("Verilator did not say where its runtime is")
-        library = Path(root, "include")
-        folders = dict.fromkeys([library, *(source.parent for source in own)])
         # Compiler options with the folders of the headers.
-        self.includes = [f"-I{each}" for each in folders]
+        self.includes = [f"-I{each}" for each in dict.fromkeys(path.parent for path in sources)]
         self.objects = []
-        for source in [*own, *(library / f"{part}.cpp" for part in parts)]:
+        for source in sources:
             self.objects.append(str(folder / f"{source.stem}.o"))
             command = [*compiler, *options, *self.includes, "-c", str(source)]
             run_tool([*command, "-o", self.objects[-1]], folder)
@@ -82,24 +66,10 @@ class Runtime:
 
 @functools.cache
 def runtime_of(
-    verilator: tuple[str, ...],
-    compiler: tuple[str, ...],
-    options: tuple[str, ...],
-    own: tuple[Path, ...],
-    parts: tuple[str, ...],
+    compiler: tuple[str, ...], options: tuple[str, ...], sources: tuple[Path, ...]
 ) -> Runtime:
     """Return a runtime, compiled once in a process."""
-    return Runtime(verilator, compiler, options, own, parts)
-
-
-def runtime_parts(makefile: Path) -> tuple[str, ...]:
-    """Return the sources that Verilator's makefile names for its runtime; versions differ."""
-    text = makefile.read_text(encoding="utf-8")
-    found = re.search(r"^VM_GLOBAL_FAST \+= ((?:\\\n|[^\n])*)", text, re.MULTILINE)
-    parts = found[1].replace("\\", " ").split() if found else []
-    if not parts:
-        raise ToolError("Verilator did not say which parts of its runtime are to be compiled")
-    return tuple(parts)
+    return Runtime(compiler, options, sources)
 
 
 _HERE = Path(__file__).parent
@@ -221,11 +191,11 @@ class Verilator:
         models = folder / "model"
         makefile = made_by(self.title, models / "Vreplay_classes.mk")
         # Compile all sources as one file, because the compiler mostly reads Verilator's headers.
-        sources = sorted(path.name for path in models.glob("*.cpp"))
-        text = _bench("replay_main.cc", trace, sources=sources)
+        model = sorted(path.name for path in models.glob("*.cpp"))
+        text = _bench("replay_main.cc", trace, sources=model)
         (models / "main.cc").write_text(text, encoding="utf-8")
-        own, parts = (_HERE / "replay.cpp",), runtime_parts(makefile)
-        runtime = runtime_of(self.command, self.compiler, _COMPILE, own, parts)
+        sources = verilator_sources(self.command, makefile.read_text(encoding="utf-8"))
+        runtime = runtime_of(self.compiler, _COMPILE, (*sources, _HERE / "replay.cpp"))
         command = [*self.compiler, *_COMPILE, *runtime.includes, "model/main.cc"]
         run_tool([*command, *runtime.objects, "-pthread", "-o", "replay"], folder)
         run_tool([str(made_by(self.compiler[0], folder / "replay"))], folder)
@@ -272,16 +242,5 @@ def _write_verilog(bench: str, trace: Trace, tops: Sequence[Top], folder: Path) 
 def _bench(name: str, trace: Trace, **more: Any) -> str:
     """Write a bench for a trace: the template of that name, with further variables."""
     files = {"STIMULI": _STIMULI, "RESULTS": _RESULTS}
-    template = _templates().get_template(f"{name}.j2")
+    template = templates(_HERE).get_template(f"{name}.j2")
     return template.render(trace=trace, ARESETN=ARESETN, **files, **more)
-
-
-@cache
-def _templates() -> Environment:
-    return Environment(
-        loader=FileSystemLoader(_HERE),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )

@@ -9,7 +9,6 @@ from __future__ import annotations
 import shlex
 from dataclasses import dataclass, fields, replace
 
-from firm_hdl.jobs.executors import PROCESSES
 from firm_hdl.wire import Wire
 
 __all__ = [
@@ -21,7 +20,7 @@ __all__ = [
     "SIMULATOR_NAMES",
     "SYSTEM_NAMES",
     "WRITER_NAMES",
-    "Options",
+    "CaseOptions",
     "Request",
     "command_again",
     "option_of",
@@ -76,7 +75,7 @@ LONGEST = 1 << 18
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
+class CaseOptions:
     """How a type is tested."""
 
     bus_bytes: int = 8
@@ -113,7 +112,7 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request(Options):
+class Request(CaseOptions):
     """The checked arguments of ``firm-hdl verify``."""
 
     types: tuple[str, ...] = ()  # Empty: all types.
@@ -123,7 +122,6 @@ class Request(Options):
     libraries: tuple[str, ...] = ()
     widths: tuple[int, ...] = (8,)  # Buses, in bytes; see `each_width`.
     jobs: int | None = None  # Processes; `None`: one per processor.
-    executor: str = PROCESSES  # See `firm_hdl.jobs.executors.run_each`.
     oracles: tuple[str, ...] = ()  # Oracles of TS1; empty: all that are installed.
     golden: str | None = None  # Folder of golden plans.
     # Whether one type is simulated for all that have the same circuit. `None`: only if all types
@@ -166,14 +164,14 @@ class Request(Options):
     @property
     def kept(self) -> dict[str, object]:
         """The options that results depend on, as JSON values. Types are in the tests."""
-        free = {"types", "jobs", "executor", "results", "report", "vcd", "silent_seconds"}
+        free = {"types", "jobs", "results", "report", "vcd", "silent_seconds"}
         names = [each.name for each in fields(self) if each.name not in free | {"simulated"}]
         found = {option_of(name): getattr(self, name) for name in names if option_of(name)}
         found["share_circuits"] = self.shares_circuits
         return {n: list(v) if isinstance(v, tuple) else v for n, v in found.items()}
 
     @property
-    def each_width(self) -> list[Options]:
+    def each_width(self) -> list[CaseOptions]:
         """The options for each of the buses."""
         return [replace(self, bus_bytes=width) for width in self.widths]
 

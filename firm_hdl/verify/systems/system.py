@@ -1,8 +1,8 @@
 """The interface of test systems, and functions that run tests and keep their records.
 
 A system lists all its tests before it runs one, so that a file of results can say what is missing.
-:func:`kept` takes the records of earlier sessions from the file, runs the other tests, says how
-many are done, and writes each record to the file at once. Each system prints its own summary.
+:func:`run_and_record` takes the records of earlier sessions from the file, runs the other tests,
+says how many are done, and writes each record to the file at once. All systems have one summary.
 """
 
 from __future__ import annotations
@@ -18,21 +18,23 @@ from typing import Any, ClassVar, TypeAlias
 from firm_hdl.cases import NotJudgedError
 from firm_hdl.errors import described
 from firm_hdl.frontend import DISTROS
-from firm_hdl.jobs.executors import PROCESSES, ExecutorError, run_each
+from firm_hdl.jobs.executors import ExecutorError, run_each
 from firm_hdl.jobs.processes import cpu_seconds
 from firm_hdl.model import WIRE_OF
 from firm_hdl.terminal import stage
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import STAGES, Record, Seconds, Test, clipped_verdict, settled
 from firm_hdl.verify.results.verdict import (
+    Counts,
     Failed,
     KnownDifference,
     NotJudged,
+    NotRun,
     Passed,
     Verdict,
     clipped,
 )
-from firm_hdl.verify.systems.options import Request, command_again
+from firm_hdl.verify.systems.options import CaseOptions, Request, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 
 __all__ = [
@@ -41,12 +43,12 @@ __all__ = [
     "System",
     "Trial",
     "TypesSystem",
+    "as_test",
     "counted",
     "failure_of",
-    "kept",
-    "print_passes",
-    "recorded",
+    "run_and_record",
     "run_tests",
+    "summary_of",
     "wire_of",
 ]
 
@@ -64,13 +66,20 @@ Made: TypeAlias = "Generator[Sequence[Record], None, None]"
 def counted(records: Iterable[Record]) -> list[Record]:
     """Return the records of one system with the verdicts that count."""
     by_key = {record.test.key: record for record in records}
-    return [replace(each, verdict=settled(each, by_key)) for each in by_key.values()]
+    found = []
+    for record in by_key.values():
+        verdict = settled(record, by_key)
+        if isinstance(verdict, NotRun):
+            verdict = NotJudged(verdict.reason)
+        found.append(replace(record, verdict=verdict))
+    return found
 
 
 class System(ABC):
     """A test system with all its tests; a context manager."""
 
     name: ClassVar[str]  # The name that `--systems` takes.
+    passes: ClassVar[str] = "types pass"  # What its tests are, and what they do if all is well.
 
     def __enter__(self) -> System:
         return self
@@ -88,32 +97,40 @@ class System(ABC):
         """What results depend on besides the request, such as versions, as JSON values."""
         return {}
 
-    @abstractmethod
     def run(self, writer: ResultsWriter | None) -> list[Record]:
         """Run the tests that `writer` has no record of; print a summary of all, and return them.
 
         The records have the verdicts that count.
         """
+        began = time.perf_counter()
+        records = counted(self.records(writer))
+        for line in self.summary(records, time.perf_counter() - began):
+            print(line)
+        return records
+
+    @abstractmethod
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
+        """Run the tests that `writer` has no record of, and print failures; return all records."""
+
+    def summary(self, records: Sequence[Record], seconds: float) -> Iterator[str]:
+        """Yield lines about all records of a run that took so long."""
+        return summary_of(records, self.passes, seconds)
 
 
 class TypesSystem(System):
-    """A test system whose tests are types, each on each bus."""
+    """A test system whose tests are types, each with each of the options of a request."""
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
         self._tasks, self._request = tasks, request
 
-    def _test(self, task: TypeUnderTest, bus_bytes: int, simulator: str = "") -> Test:
-        """Return the test of a type on a bus."""
-        return Test(
-            system=self.name,
-            simulator=simulator,
-            distro=task.distro,
-            type=task.name,
-            same=task.same,
-            wire=wire_of(task.distro, self._request.wire),
-            bus_bytes=bus_bytes,
-            options=",".join(self._request.folders),
-        )
+    @property
+    def tests(self) -> Sequence[Test]:
+        """The tests of all types on all buses."""
+        return [each for options in self._request.each_width for each in self._tests(options)]
+
+    def _tests(self, options: CaseOptions) -> list[Test]:
+        """Return the tests of all types with some options."""
+        return [as_test(self.name, task, options) for task in self._tasks]
 
     def _command(self, test: Test, **more: object) -> str:
         """Return the command that runs one test again, with its bus unless `more` is given."""
@@ -126,6 +143,31 @@ class TypesSystem(System):
             wire=self._request.wire,
             **(more or {"bus_bytes": test.bus_bytes}),
         )
+
+
+def as_test(
+    system: str,
+    task: TypeUnderTest,
+    options: CaseOptions,
+    *words: str,
+    simulator: str = "",
+    bus_bytes: int | None = None,
+) -> Test:
+    """Return the test of a type.
+
+    * `*words`: what results depend on besides the folders.
+    * `bus_bytes`: 0 if no circuit is tested; `None`: that of the options.
+    """
+    return Test(
+        system=system,
+        simulator=simulator,
+        distro=task.distro,
+        type=task.name,
+        same=task.same,
+        wire=wire_of(task.distro, options.wire),
+        bus_bytes=options.bus_bytes if bus_bytes is None else bus_bytes,
+        options=",".join([*words, *options.folders]),
+    )
 
 
 def wire_of(distro: str, wire: str | None) -> str:
@@ -198,15 +240,14 @@ class Trial:
         verdict = clipped_verdict(self.verdict)
         return replace(self.record, verdict=verdict, seconds=seconds, cpu_seconds=processor)
 
+    def __enter__(self) -> Trial:
+        return self
 
-def recorded(test: Test, run: Callable[[Trial], None]) -> Record:
-    """Run a test, which adds to its trial; return its record. An exception is in the verdict."""
-    trial = Trial.of(test)
-    try:
-        run(trial)
-    except Exception as error:
-        trial.stop(error)
-    return trial.end()
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> bool:
+        """End the test if there was an error, which goes into the record."""
+        if isinstance(error, Exception):
+            self.stop(error)
+        return isinstance(error, Exception)
 
 
 def failure_of(what: str, record: Record) -> Iterator[str]:
@@ -222,28 +263,57 @@ def failure_of(what: str, record: Record) -> Iterator[str]:
     yield "\n".join([f"FAIL {what}", *(f"    {line}" for line in lines)])
 
 
-def print_passes(records: Iterable[Record], what: str) -> None:
-    """Print how many tests of each distribution and bus pass, and how many are not judged."""
-    records = counted(records)
-    verdicts = [each.verdict for each in records]
-    passed: Counter[tuple[int, str]] = Counter()
-    total: Counter[tuple[int, str]] = Counter()
-    for record, verdict in zip(records, verdicts, strict=True):
-        keys = [(record.test.bus_bytes, distro) for distro in record.test.distros]
-        total.update([] if isinstance(verdict, NotJudged) else keys)
-        passed.update(keys if isinstance(verdict, Passed | KnownDifference) else [])
-    for key in sorted(total, key=lambda key: (key[0], [*DISTROS].index(key[1]))):
-        bus = f" ({key[0]}-byte bus)" if key[0] else ""
-        print(f"{key[1]:8} {passed[key]:4} of {total[key]:4} {what}{bus}")
-    known = [verdict for verdict in verdicts if isinstance(verdict, KnownDifference)]
+def summary_of(records: Sequence[Record], passes: str, seconds: float) -> Iterator[str]:
+    """Yield lines about tests whose verdicts count: those of each distribution and bus, and all.
+
+    * `passes`: what the tests are, and what they do if all is well, such as ``types pass``.
+    * `seconds`: how long the run took.
+    """
+    groups: dict[tuple[int, int], list[Verdict]] = defaultdict(list)
+    names = [*DISTROS]
+    for record in records:
+        for distro in record.test.distros:
+            groups[record.test.bus_bytes, names.index(distro)].append(record.verdict)
+    for (bus_bytes, number), verdicts in sorted(groups.items()):
+        counts = Counts.of(verdicts)
+        if judged := counts.total - counts.not_judged:
+            bus = f" ({bus_bytes}-byte bus)" if bus_bytes else ""
+            passed = counts.passed + counts.known
+            yield f"{names[number]:8} {passed:4} of {judged:4} {passes}{bus}"
+    known = [each.verdict for each in records if isinstance(each.verdict, KnownDifference)]
     if known:
-        names = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
-        print(f"{len(known)} of them with a known difference between libraries: {names}")
-    if not_judged := sum(isinstance(verdict, NotJudged) for verdict in verdicts):
-        print(f"{not_judged} of {len(records)} {what.split()[0]} not judged")
+        keys = ", ".join(sorted({key for verdict in known for key in verdict.keys}))
+        yield f"{len(known)} of them with a known difference between libraries: {keys}"
+    counts, what = Counts.of(each.verdict for each in records), passes.split()[0]
+    if counts.not_judged:
+        yield f"{counts.not_judged} of {counts.total} {what} not judged"
+    good = [each for each in records if isinstance(each.verdict, Passed | KnownDifference)]
+    if shapes := {each.shape for each in good if each.shape}:
+        yield f"{len(shapes)} different circuits"
+    if shared := sum(bool(each.same_as) for each in records):
+        yield (
+            f"{shared} of {counts.total} {what} have the circuit of another, which was simulated"
+        )
+    if not (ran := [each for each in records if each.packets]):
+        return
+    figures = {
+        "packets": sum(each.packets for each in ran),
+        "cycles": sum(each.cycles for each in ran),
+        "transfers of leaves": round(sum(each.metrics.get("transfers", 0) for each in ran)),
+    }
+    text = ", ".join(f"{figure} {name}" for name, figure in figures.items() if figure)
+    yield f"{text}, {counts.failed} failures in {seconds:.0f} s"
+    slowest = sorted(ran, key=lambda each: -each.seconds.total)
+    median = slowest[len(ran) // 2].seconds.total
+    text = ", ".join(f"{each.test.type} {each.seconds.total:.1f} s" for each in slowest[:5])
+    yield f"median of a test {median:.2f} s; slowest: {text}"
+    writers = Counter(name for each in ran for name in each.written_by)
+    if writers:
+        text = ", ".join(f"{name} {count} tests" for name, count in writers.items())
+        yield f"wire bytes: {text}"
 
 
-def kept(
+def run_and_record(
     tests: Sequence[Test],
     writer: ResultsWriter | None,
     run: Callable[[list[Test]], Made],
@@ -287,7 +357,6 @@ def run_tests(
     command: Callable[[Test], str],
     *,
     most: int = 1,
-    executor: str = PROCESSES,
     jobs: int | None = None,
 ) -> Made:
     """Call ``work(context, test)`` for each test, and yield records when they are ready.
@@ -306,7 +375,7 @@ def run_tests(
     while shares:
         again: list[tuple[Test, ...]] = []
         tasks = [(share, (work, context, share)) for share in shares]
-        with closing(run_each(_work_share, tasks, executor=executor, jobs=jobs)) as results:
+        with closing(run_each(_work_share, tasks, jobs=jobs)) as results:
             for share, result in results:
                 if isinstance(result, ExecutorError) and len(share) > 1:
                     again += [(test,) for test in share]

@@ -11,16 +11,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from firm_hdl.errors import DefinitionError, Diagnostic
+from firm_hdl.errors import DefinitionError, Diagnostic, UserError
 from firm_hdl.frontend import Library, all_names, open_library
 from firm_hdl.model import Message, closure
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.wire import too_large
 
 __all__ = ["TypeUnderTest", "UnknownTypeError", "collect_own", "collect_tasks", "library_of"]
 
 
-class UnknownTypeError(ValueError):
+class UnknownTypeError(UserError):
     """No distribution or recording has a type that was asked for."""
 
 
@@ -33,7 +33,7 @@ class TypeUnderTest:
     same: tuple[str, ...]  # All distributions with an equal type, `distro` included.
 
 
-def library_of(distro: str, options: Options) -> Library:
+def library_of(distro: str, options: CaseOptions) -> Library:
     """Return the library of a distribution with the folders or recordings of some options.
 
     It is opened once in a process. Without folders and recordings, it has only the distribution's
@@ -115,7 +115,7 @@ def collect_own(
     found: dict[tuple[str, str], int] = {}
     wrong: dict[str, Diagnostic] = {} if problems is None else problems
     for distro in distros:
-        library = library_of(distro, Options(paths=tuple(paths), depends=tuple(depends)))
+        library = library_of(distro, CaseOptions(paths=tuple(paths), depends=tuple(depends)))
         for name in names or all_names(distro, paths, ()):
             try:
                 messages = library.interface(name).messages

@@ -100,8 +100,6 @@ def judge(
     """
     if case.language not in oracle.languages.get(case.dialect, ()):
         return None
-    if case.is_changed and not oracle.judges_changes:
-        return None
     ours = read(universe, case) if ours is None else ours
     is_refused = False
     verdict: Verdict

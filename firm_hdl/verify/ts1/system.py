@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-import time
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,10 +12,18 @@ from firm_hdl.errors import DefinitionError
 from firm_hdl.frontend import DEFAULT_DISTRO, DISTROS
 from firm_hdl.frontend.search import workspace_folders
 from firm_hdl.verify.results.file import ResultsWriter
+from firm_hdl.verify.results.oracles import OracleSum, oracle_sums, remarks_of
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import Failed, KnownDifference, NotJudged, Passed
 from firm_hdl.verify.systems.options import Request, command_again
-from firm_hdl.verify.systems.system import Made, System, failure_of, kept, run_tests
+from firm_hdl.verify.systems.system import (
+    Made,
+    System,
+    failure_of,
+    run_and_record,
+    run_tests,
+    summary_of,
+)
 from firm_hdl.verify.systems.tasks import UnknownTypeError
 from firm_hdl.verify.ts1.judge import judge_case
 from firm_hdl.verify.ts1.oracles import ORACLES
@@ -38,7 +44,7 @@ _LABELS = {
     Failed.name: "differs",
     NotJudged.name: "not judged",
 }
-"""Texts for the verdicts of an oracle, in the order of the columns."""
+"""Texts for the verdicts of an oracle."""
 
 
 def each_distro(request: Request) -> list[Request]:
@@ -105,6 +111,7 @@ class Ts1(System):
     """
 
     name = "ts1"
+    passes = "definitions agree"
 
     def __init__(self, request: Request) -> None:
         self.request = request
@@ -152,25 +159,15 @@ class Ts1(System):
         oracles = [f"{name} {version}".strip() for name, version in self.versions.items()]
         return {f"oracles of {self.distro}": sorted(oracles)}
 
-    def run(self, writer: ResultsWriter | None) -> list[Record]:
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
         """Judge everything. A named oracle that is not installed is a failure."""
-        began = time.perf_counter()
         label = f"ts1 {self.distro}"
-        records = kept(
+        records = run_and_record(
             self.tests, writer, self.judged, self._lines_of, label=label, unit="definition"
         )
-        print(*self.summary(records), sep="\n")
-        differing = sum(
-            max(1, sum(isinstance(each.verdict, Failed) for each in record.verdicts))
-            for record in records
-            if isinstance(record.verdict, Failed)
-        )
-        count = f"{len(records)} definition{'s' * (len(records) != 1)}"
-        print(f"{count}, {time.perf_counter() - began:.0f} s, {differing} differences")
         for name, why in self.missing.items() if self.request.oracles else ():
             test = Test(system=self.name, distro=self.distro, type=f"oracle {name}")
-            verdict = Failed((f"is not available: {why}",))
-            records.append(Record(test=test, verdict=verdict))
+            records.append(Record(test=test, verdict=Failed((f"is not available: {why}",))))
         return records
 
     def judged(self, tests: Sequence[Test]) -> Made:
@@ -211,33 +208,28 @@ class Ts1(System):
                 lines.append(f"    and {len(details) - _MOST_DETAILS} more")
             yield "\n".join([*lines, f"    again: {self.command(record.test)}"])
 
-    def summary(self, records: Iterable[Record]) -> Iterator[str]:
+    def summary(self, records: Sequence[Record], seconds: float) -> Iterator[str]:
         """Yield the verdicts on a few definitions, the numbers of each oracle, and all keys."""
-        records = list(records)
-        counts: Counter[tuple[str, str]] = Counter()
-        refused: Counter[str] = Counter()
-        details: Counter[tuple[str, str, str]] = Counter()
-        is_short = len(records) <= _MOST_SHOWN
-        for record in records:
+        for record in records if len(records) <= _MOST_SHOWN else ():
             for each in record.verdicts:
-                verdict, texts = each.verdict, each.verdict.details
-                counts[each.oracle, verdict.name] += 1
-                refused[each.oracle] += each.is_refused
-                if not isinstance(verdict, Failed):
-                    details.update((each.oracle, verdict.name, text) for text in texts)
-                if is_short:
-                    said = "; ".join(texts) or "both refuse" * each.is_refused
-                    text = ": ".join(filter(None, [_LABELS[verdict.name], said]))
-                    yield f"{self.cases[record.test].full_name}  {each.oracle}  {text}"
+                said = "; ".join(each.verdict.details) or "both refuse" * each.is_refused
+                text = ": ".join(filter(None, [_LABELS[each.verdict.name], said]))
+                yield f"{self.cases[record.test].full_name}  {each.oracle}  {text}"
+        sums = {each.oracle: each for each in oracle_sums(records)}
         yield f"{'oracle':24} {'agree':>7} {'known':>7} {'differ':>7} {'not judged':>11}"
         for name, version in self.versions.items():
-            row = [counts[name, verdict] for verdict in _LABELS]
-            both = f"  ({refused[name]} refused by both)" if refused[name] else ""
-            yield f"{f'{name} {version}':24} {row[0]:7} {row[1]:7} {row[2]:7} {row[3]:11}{both}"
+            found = sums.get(name, OracleSum(distro=self.distro, oracle=name))
+            both = f"  ({found.refused} refused by both)" if found.refused else ""
+            yield (
+                f"{f'{name} {version}':24} {found.agree:7} {found.known:7} {found.differ:7} "
+                f"{found.not_judged:11}{both}"
+            )
         for name, why in self.missing.items():
             yield f"{name:24} is not available: {why}"
-        for (name, label, text), count in sorted(details.items()):
-            yield f"{_LABELS[label]}, {name}: {text}: {count}"
+        for remark in remarks_of(records):
+            yield f"{_LABELS[remark.verdict]}, {remark.oracle}: {remark.what}: {remark.count}"
+        own = [record for record in records if record.test in self.cases]
+        yield from summary_of(own, self.passes, seconds)
 
 
 def _universe(request: Request, folder: str) -> Universe:

@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Source
 from firm_hdl.frontend import DISTROS, Library, show
 from firm_hdl.frontend.names import KINDS, Kind
 from firm_hdl.frontend.search import environment_origins
 from firm_hdl.frontend.sources import (
-    Definition,
     EmbeddedOrigin,
     FolderOrigin,
     Language,
     Origin,
-    PackagePlace,
     Sources,
 )
 from firm_hdl.model import Dialect, Interface
@@ -40,12 +37,6 @@ class DefinitionCase:
     text: str  # The whole text, with its own line ends.
     # The name of the file, or of a text that comes with firm-hdl.
     source: str = field(default="", compare=False)
-    before: str | None = None  # The original text of the file, if `text` was changed.
-
-    @property
-    def is_changed(self) -> bool:
-        """Whether the text differs from that of the file."""
-        return self.before is not None
 
     @property
     def full_name(self) -> str:
@@ -83,10 +74,9 @@ class Universe:
         self._folders = [FolderOrigin(path) for path in paths]
         needed = map(FolderOrigin, depends)
         environment = environment_origins(DISTROS[distro].dialect, os.environ)
-        self._origins: list[Origin]
-        self._origins = [*self._folders, *needed, *environment, EmbeddedOrigin(distro)]
-        self._sources = Sources(self._origins)
-        self.library = Library(distro, origins=self._origins)
+        self.origins: list[Origin] = [*self._folders, *needed, *environment, EmbeddedOrigin(distro)]
+        self._sources = Sources(self.origins)
+        self.library = Library(distro, origins=self.origins)
         self.distro = distro
         self.folder = folder
 
@@ -166,35 +156,11 @@ class Universe:
 
         Raises `DefinitionError` if the definition, or one that it depends on, is refused.
         """
-        return self._library_with(case).interface(case.spelled_name)
+        return self.library.interface(case.spelled_name)
 
     def show(self, case: DefinitionCase) -> str:
         """Return a definition as ``firm-hdl show`` prints it."""
-        return show(self._library_with(case), case.spelled_name)
-
-    def _library_with(self, case: DefinitionCase) -> Library:
-        if not case.is_changed:
-            return self.library
-        return Library(self.distro, origins=[_Changed(case), *self._origins])
-
-
-class _Changed:
-    """An origin that has only the text of one case."""
-
-    packages: ClassVar[Mapping[str, PackagePlace]] = {}
-
-    def __init__(self, case: DefinitionCase) -> None:
-        self._case = case
-        self._key = case.package, case.kind, case.name
-
-    def names(self) -> Iterable[tuple[str, Kind, str]]:
-        return [self._key]
-
-    def find(self, package: str, kind: Kind, name: str) -> Definition | None:
-        if (package, kind, name) != self._key:
-            return None
-        source = Source(name=self._case.file, text=self._case.text)
-        return Definition(source=source, language=self._case.language)
+        return show(self.library, case.spelled_name)
 
 
 def write_definitions(universe: Universe) -> None:

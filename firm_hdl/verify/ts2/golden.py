@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from firm_hdl.arguments import add_options
-from firm_hdl.errors import DefinitionError
+from firm_hdl.errors import DefinitionError, UserError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.files import read_file, write_file
 from firm_hdl.frontend import DISTROS, Library, load_all, open_library
@@ -75,22 +75,22 @@ class Checked:
 def read_golden(folder: str | os.PathLike[str]) -> list[Golden]:
     """Read all golden plans of a folder, sorted by path.
 
-    Raises `ValueError` if a file is not a plan, or its folder is not named like a distribution.
+    Raises `UserError` if a file is not a plan, or its folder is not named like a distribution.
     """
     found = []
     for path in sorted(Path(folder).glob("*/*.yaml")):
         distro = path.parent.name
         if distro not in DISTROS:
-            raise ValueError(f"'{path}' is not below a distribution's name: {', '.join(DISTROS)}")
+            raise UserError(f"'{path}' is not below a distribution's name: {', '.join(DISTROS)}")
         data = read_file(path, _MOST_BYTES)
         try:
             text = data.decode("utf-8")
         except UnicodeDecodeError:
-            raise ValueError(f"'{path}' is not UTF-8 text") from None
+            raise UserError(f"'{path}' is not UTF-8 text") from None
         try:
             plan = head_of(text)
         except ValueError as error:
-            raise ValueError(f"'{path}': {error}") from None
+            raise UserError(f"'{path}': {error}") from None
         found.append(Golden(path=path, distro=distro, plan=plan, text=text))
     return found
 
@@ -141,13 +141,13 @@ def add(folder: str | os.PathLike[str], distro: str, message: Message, plan: Pla
 
 
 def write_golden(path: Path, text: str) -> None:
-    """Write a golden plan; raise a `BuildError` where that would follow a link in the folder.
+    """Write a golden plan; raise a `UserError` where that would follow a link in the folder.
 
     The user named the folder, not the files in it, which may come from others.
     """
     for each in (path.parent, path):
         if each.is_symlink():
-            raise BuildError(f"'{each}' is a link; golden plans are not written through links")
+            raise UserError(f"'{each}' is a link; golden plans are not written through links")
     write_file(path, text)
 
 
@@ -182,15 +182,12 @@ def run_golden(given: argparse.Namespace) -> int:
     """Run ``firm-hdl golden``; return 0 if no difference is left."""
     if given.do == "add":
         return _add_types(given)
-    try:
-        goldens = read_golden(given.folder)
-    except ValueError as error:
-        raise BuildError(str(error)) from None
+    goldens = read_golden(given.folder)
     wanted = set(given.types)
     if unknown := wanted - {golden.plan.message for golden in goldens}:
-        raise BuildError(f"'{given.folder}' has no plan of {', '.join(sorted(unknown))}")
+        raise UserError(f"'{given.folder}' has no plan of {', '.join(sorted(unknown))}")
     if not goldens:
-        raise BuildError(f"'{given.folder}' has no golden plans")
+        raise UserError(f"'{given.folder}' has no golden plans")
     chosen = [golden for golden in goldens if not wanted or golden.plan.message in wanted]
     results = check_golden(chosen, given.path, given.bag, depends=given.depends)
     differing = [result for result in results if not isinstance(result.verdict, Passed)]
@@ -226,7 +223,7 @@ def _accept(differing: Sequence[Checked]) -> int:
 
 def _add_types(given: argparse.Namespace) -> int:
     if not given.types:
-        raise BuildError("name the types to add")
+        raise UserError("name the types to add")
     library = open_library(given.distro, given.path, given.bag, depends=given.depends)
     for message in load_all(library, given.types):
         plan = plan_of(message, given.wire, given.bus_bytes, given.max_message_bytes)

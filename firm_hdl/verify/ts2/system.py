@@ -6,7 +6,7 @@ golden plans are given, those of the types that were asked for must mean the sam
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -18,20 +18,18 @@ from firm_hdl.model import Message
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES, check
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test, clipped_verdict
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
-from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.results.verdict import Counts, NotJudged
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import (
     Made,
     Trial,
     TypesSystem,
-    counted,
     failure_of,
-    kept,
-    print_passes,
-    recorded,
+    run_and_record,
     run_tests,
+    summary_of,
 )
-from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
+from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts2.golden import Golden, check_golden, read_golden
 from firm_hdl.wire import Wire, lay_out, refusals
 
@@ -62,55 +60,51 @@ def check_plan(message: Message, wire: Wire | None, trial: Trial) -> None:
 class Ts2(TypesSystem):
     """Plans of types; a test is one plan, or one golden plan.
 
-    * `request`: `paths`, `wire`, `widths`, `golden`, `jobs` and `executor` are used.
+    * `request`: `paths`, `wire`, `widths`, `golden`, and `jobs` are used.
 
-    Raises `BuildError`: from `tests`, if the folder of golden plans cannot be used.
+    Raises `UserError`: from `tests`, if the folder of golden plans cannot be used.
     """
 
     name = "ts2"
-
-    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
-        super().__init__(tasks, request)
-        self._plans = [self._test(task, width) for task in tasks for width in request.widths]
+    passes = "plans are sound"
 
     @cached_property
     def tests(self) -> Sequence[Test]:
         """The tests of plans, and then the tests of golden plans."""
-        return [*self._plans, *map(self._golden_test, self._goldens)]
+        return [*super().tests, *map(self._golden_test, self._goldens)]
 
     @property
     def options(self) -> Mapping[str, Any]:
         """The folder of golden plans."""
         return {"golden": self._request.golden}
 
-    def run(self, writer: ResultsWriter | None) -> list[Record]:
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
         """Check all plans, and compare golden ones."""
         # Read the golden plans before any plan is made, so that errors show at once.
         goldens, request = self._goldens, self._request
 
         def checked(left: Sequence[Test]) -> Made:
             return run_tests(
-                *(_checked, request, left, self._command),
-                most=MOST_IN_A_SHARE,
-                executor=request.executor,
-                jobs=request.jobs,
+                *(_checked, request, left, self._command), most=MOST_IN_A_SHARE, jobs=request.jobs
             )
 
-        records = kept(self._plans, writer, checked, _lines_of, label="TS2", unit="plan")
-        print_passes(records, "plans are sound")
-        shapes = {each.shape for each in records if isinstance(each.verdict, Passed)}
-        print(f"{len(shapes)} different circuits")
-        return counted(records) + ([] if request.golden is None else self._compare(goldens, writer))
+        plans = run_and_record(super().tests, writer, checked, _lines_of, label="TS2", unit="plan")
+        return plans + ([] if request.golden is None else self._compare(goldens, writer))
+
+    def summary(self, records: Sequence[Record], seconds: float) -> Iterator[str]:
+        """Yield lines about plans, and one about golden plans."""
+        plans = len(self.tests) - len(self._goldens)
+        yield from summary_of(records[:plans], self.passes, seconds)
+        if self._request.golden is not None:
+            differing = Counts.of(each.verdict for each in records[plans:]).failed
+            yield f"golden plans: {len(self._goldens)} compared, {differing} differ"
 
     @cached_property
     def _goldens(self) -> list[Golden]:
         """The golden plans of the types that were asked for."""
         if self._request.golden is None:
             return []
-        try:
-            goldens = read_golden(self._request.golden)
-        except ValueError as error:
-            raise BuildError(str(error)) from None
+        goldens = read_golden(self._request.golden)
         wanted = {(distro, _plain(task.name)) for task in self._tasks for distro in task.same}
         return [each for each in goldens if (each.distro, _plain(each.plan.message)) in wanted]
 
@@ -127,7 +121,7 @@ class Ts2(TypesSystem):
                 command = self._command(test, golden=request.golden)
                 yield [Record(test=test, verdict=verdict, command=command)]
 
-        found = kept(
+        found = run_and_record(
             list(tests),
             writer,
             compared,
@@ -135,8 +129,6 @@ class Ts2(TypesSystem):
             label="TS2",
             unit="golden plan",
         )
-        differing = sum(isinstance(each.verdict, Failed) for each in found)
-        print(f"golden plans: {len(goldens)} compared, {differing} differ")
         whole = Test(system=self.name, distro="", type=f"golden plans of {request.golden}")
         none = NotJudged("none of them is of a type that was asked for")
         return found or [Record(test=whole, verdict=none)]
@@ -152,14 +144,11 @@ class Ts2(TypesSystem):
         )
 
 
-def _checked(options: Options, test: Test) -> Record:
+def _checked(options: CaseOptions, test: Test) -> Record:
     """Read, plan and check one type. An exception becomes the verdict."""
-
-    def run(trial: Trial) -> None:
-        message = library_of(test.distro, options).message(test.type)
-        check_plan(message, options.wire, trial)
-
-    return recorded(test, run)
+    with Trial.of(test) as trial:
+        check_plan(library_of(test.distro, options).message(test.type), options.wire, trial)
+    return trial.end()
 
 
 def _lines_of(record: Record) -> Iterable[str]:

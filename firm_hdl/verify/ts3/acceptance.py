@@ -12,14 +12,14 @@ the results. If a simulator of exported text is asked for, it replays all runs, 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from itertools import chain
 from typing import Any
 
 from firm_hdl.cases import NotJudgedError
-from firm_hdl.cases.damage import DAMAGES, broken_packets, stalls_for
+from firm_hdl.cases.damage import broken_and_good, stalls_for
 from firm_hdl.cases.directed import bare_packets
 from firm_hdl.cases.effort import (
     all_cases,
@@ -43,8 +43,8 @@ from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.records import PlanCoverage, Record, Test
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options
-from firm_hdl.verify.systems.system import Trial, recorded
+from firm_hdl.verify.systems.options import CaseOptions
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import library_of
 from firm_hdl.verify.ts3.circuit import Circuit
 from firm_hdl.verify.ts3.compare import (
@@ -57,49 +57,56 @@ from firm_hdl.verify.ts3.confirm import confirm
 from firm_hdl.verify.ts3.task import command_of
 from firm_hdl.wire import Wire, lay_out
 
-__all__ = ["Acceptance", "accept_message", "accepted", "confirm_cases", "measured"]
+__all__ = [
+    "Acceptance",
+    "accept_message",
+    "accepted",
+    "confirm_cases",
+    "type_and_oracle",
+    "with_commands",
+]
 
 WAVEFORM_FOLDER = "waveforms"
 """The folder that the command for a waveform writes to."""
 
 
-def accepted(options: Options, test: Test) -> Record:
-    """Run all cases of the type of a test."""
-
-    def run(message: Message, judge: Judge, options: Options, trial: Trial) -> None:
+def accepted(options: CaseOptions, test: Test) -> Record:
+    """Run all cases of the type of a test. An exception goes into the record."""
+    with Trial.of(test) as trial:
+        message, judge = type_and_oracle(options, trial)
         accept_message(message, judge.oracle, judge.name, options, trial)
+    return with_commands(options, trial.end())
 
-    return measured(options, test, run)
 
+def type_and_oracle(options: CaseOptions, trial: Trial) -> tuple[Message, Judge]:
+    """Return the type of a test, and its oracle.
 
-def measured(
-    options: Options, test: Test, run: Callable[[Message, Judge, Options, Trial], None]
-) -> Record:
-    """Find the type of a test and its oracle, and call `run` with them; return the record.
-
-    * `run`: adds to the trial. An exception of `run` goes into the record as well.
+    Raises `DefinitionError`. Raises `NotJudgedError` if no oracle can judge the type.
     """
+    test = trial.record.test
+    message = library_of(test.distro, options).message(test.type)
+    judge = judge_of(
+        message,
+        None if options.paths or options.bags else test.distro,
+        stand_in=not options.bags and may_stand_in(message, options.references),
+    )
+    trial.record.note = judge.note
+    return message, judge
 
-    def found(trial: Trial) -> None:
-        message = library_of(test.distro, options).message(test.type)
-        judge = judge_of(
-            message,
-            None if options.paths or options.bags else test.distro,
-            stand_in=not options.bags and may_stand_in(message, options.references),
-        )
-        trial.record.note = judge.note
-        run(message, judge, options, trial)
 
+def with_commands(options: CaseOptions, record: Record) -> Record:
+    """Return the record with the commands that repeat its test."""
+    test = record.test
     waveform = replace(options, vcd=WAVEFORM_FOLDER, simulator="python")
     return replace(
-        recorded(test, found),
+        record,
         command=command_of(options, test.type, distro=test.distro),
         waveform_command=command_of(waveform, test.type, distro=test.distro),
     )
 
 
 def accept_message(
-    message: Message, oracle: RosbagsOracle, name: str, options: Options, trial: Trial
+    message: Message, oracle: RosbagsOracle, name: str, options: CaseOptions, trial: Trial
 ) -> None:
     """Run all cases of a message type that the oracle knows by `name`, and add to the trial."""
     wire: Any = options.wire or message.wire
@@ -139,7 +146,7 @@ def confirm_cases(
     message: Message,
     wire: Wire,
     cases: Sequence[Case],
-    options: Options,
+    options: CaseOptions,
     trial: Trial,
     oracle: RosbagsOracle,
 ) -> None:
@@ -176,18 +183,18 @@ class Acceptance:
         self,
         message: Message,
         wire: Wire,
-        options: Options,
+        options: CaseOptions,
         trial: Trial,
         max_message_bytes: int | None = None,
     ):
         self._options, self._trial = options, trial
         layout = lay_out(message, wire)
         if max_message_bytes is None:
-            max_message_bytes = message_limit(layout.min_bytes)
+            max_message_bytes = message_limit(layout.least_bytes)
         self.plan = build_plan(
             layout, bus_bytes=options.bus_bytes, max_message_bytes=max_message_bytes
         )
-        if reason := too_large(self.plan, layout.min_bytes):
+        if reason := too_large(self.plan, layout.least_bytes):
             raise NotJudgedError(reason)
         trial.record.shape = digest(self.plan)
         self._random = random.Random(f"{options.seed}/{message.name}/broken")
@@ -264,9 +271,7 @@ class Acceptance:
 
     def check_damaged(self, cases: Sequence[Case]) -> None:
         """Check the hardware against the golden model with damaged packets."""
-        sample = list(cases[:: max(1, len(cases) // len(DAMAGES))])
-        broken = list(broken_packets(self.plan, sample, self._random))
-        packets = list(chain.from_iterable(zip(broken, (c.packet for c in sample), strict=True)))
+        packets = broken_and_good(self.plan, cases, self._random)
         stalls = stalls_for(self._random.random()) if self._options.stalled else None
         where = f"hardware, broken packets, {stalls}"
         seen = self.circuit.send(where, packets, stalls)

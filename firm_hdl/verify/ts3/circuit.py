@@ -27,10 +27,10 @@ from firm_hdl.sim.harness import Harness, RunResult
 from firm_hdl.sim.stalls import Stalls
 from firm_hdl.verify.simulators.programs import TextSimulator, simulator
 from firm_hdl.verify.simulators.trace import Trace, read_row
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import Trial
 
-__all__ = ["Circuit", "first_difference", "replay_failures"]
+__all__ = ["Circuit", "first_wrong_port", "replay_failures"]
 
 FULL_CYCLES = 60
 """Converters are full after this many cycles in which nothing leaves them."""
@@ -46,7 +46,7 @@ class Circuit:
     large to export.
     """
 
-    def __init__(self, message: Message, plan: Plan, options: Options, trial: Trial):
+    def __init__(self, message: Message, plan: Plan, options: CaseOptions, trial: Trial):
         self._message, self._plan, self._options, self._trial = message, plan, options, trial
         self._runs = 0
         self._other = simulator(options.simulator)
@@ -163,7 +163,7 @@ def replay_failures(
         return [f"{simulator.title}: {error}"]
     if not rows:
         return [f"{simulator.title}: no cycle was compared"]
-    difference = first_difference(trace, [row.rstrip() for row in rows])
+    difference = first_wrong_port(trace, [row.rstrip() for row in rows])
     return [f"{simulator.title}: {difference}"] if difference else []
 
 
@@ -175,7 +175,7 @@ def check_exportable(plan: Plan) -> None:
         raise NotJudgedError(f"it cannot be exported: {error}") from None
 
 
-def first_difference(trace: Trace, rows: Sequence[str]) -> str | None:
+def first_wrong_port(trace: Trace, rows: Sequence[str]) -> str | None:
     """Describe the first output that is not as recorded; `None` if all are."""
     if trace.expected == rows:
         return None

@@ -43,10 +43,10 @@ from firm_hdl.plan import Leaf, Payload, Plan, build_plan
 from firm_hdl.plan.interpret import Decoded, decode, encode
 from firm_hdl.recordings import Recording, Topic
 from firm_hdl.verify.results.records import Record, Test
-from firm_hdl.verify.systems.options import MOST_MESSAGES, Options
+from firm_hdl.verify.systems.options import MOST_MESSAGES, CaseOptions
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError, library_of
-from firm_hdl.verify.ts3.acceptance import Acceptance, measured
+from firm_hdl.verify.ts3.acceptance import Acceptance, type_and_oracle, with_commands
 from firm_hdl.wire import Wire, lay_out, too_large
 
 __all__ = ["Selection", "collect_recorded", "replay", "select", "topics_of"]
@@ -286,16 +286,19 @@ REPRESENTATIONS = {
 """Meanings of the second byte of a CDR packet; OMG DDS-XTypes 1.3, clause 7.6.2.1.2."""
 
 
-def replay(options: Options, test: Test) -> Record:
+def replay(options: CaseOptions, test: Test) -> Record:
     """Replay the messages of the type of a test. Errors are not raised, but are in the record.
 
     * `options`: options with recordings.
     * `test`: its distribution is the one by whose rules the definitions in the recordings are read.
     """
-    return measured(options, test, _replay)
+    with Trial.of(test) as trial:
+        message, judge = type_and_oracle(options, trial)
+        _replay(message, judge, options, trial)
+    return with_commands(options, trial.end())
 
 
-def _replay(message: Message, judge: Judge, options: Options, trial: Trial) -> None:
+def _replay(message: Message, judge: Judge, options: CaseOptions, trial: Trial) -> None:
     record = trial.record
     topics, others = _topics(message, library_of(record.test.distro, options), options.bags)
     selection = _select(message, topics, options)
@@ -360,7 +363,7 @@ def _topics(
     return kept, foreign + others
 
 
-def _select(message: Message, topics: Sequence[Place], options: Options) -> Selection:
+def _select(message: Message, topics: Sequence[Place], options: CaseOptions) -> Selection:
     """Select messages; raise `NotJudgedError` if there are none."""
     most_bytes = None
     if options.most_cases is None:
@@ -533,7 +536,7 @@ def _difference(packet: bytes, answer: bytes, header_bytes: int) -> str:
     return f"with {', '.join(found)}" if found else ""
 
 
-def _counts(selection: Selection, options: Options) -> list[str]:
+def _counts(selection: Selection, options: CaseOptions) -> list[str]:
     """Return texts about how many messages were replayed, and which were left out and why."""
     topics = "1 topic" if selection.topics == 1 else f"{selection.topics} topics"
     found = [f"{len(selection.messages)} of {selection.total} messages of {topics} replayed"]

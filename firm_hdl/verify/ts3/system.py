@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -11,38 +10,32 @@ from typing import Any
 from firm_hdl.verify.references.clients import find_references
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
-from firm_hdl.verify.results.verdict import Failed
 from firm_hdl.verify.simulators.programs import simulator
-from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import (
     Made,
-    System,
-    counted,
+    TypesSystem,
     failure_of,
-    kept,
-    print_passes,
+    run_and_record,
     run_tests,
+    summary_of,
     wire_of,
 )
-from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.acceptance import accepted
 from firm_hdl.verify.ts3.replay import replay
-from firm_hdl.verify.ts3.task import command_of, same_circuits, test_of
+from firm_hdl.verify.ts3.task import as_test, command_of, same_circuits
 
 __all__ = ["Ts3"]
 
 
-class Ts3(System):
+class Ts3(TypesSystem):
     """The test system of TS3. A test is one type with one set of options.
 
     Raises `ProgramMissingError` or `ClientMissingError`: when the system is entered.
     """
 
     name = "ts3"
-
-    def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
-        self._tasks, self._request, self._options = tasks, request, request.each_width
-        self._version = ""
+    _version = ""
 
     def __enter__(self) -> Ts3:
         request = self._request
@@ -55,30 +48,24 @@ class Ts3(System):
                 print(line)
         return self
 
-    @property
-    def tests(self) -> Sequence[Test]:
-        """The tests of all types with all sets of options."""
-        return [test_of(task, each) for each in self._options for task in self._tasks]
+    def _tests(self, options: CaseOptions) -> list[Test]:
+        return [as_test(task, options) for task in self._tasks]
 
     @property
     def options(self) -> Mapping[str, Any]:
         """The simulator and its version."""
         return {"simulator": f"{self._request.simulator} {self._version}".strip()}
 
-    def run(self, writer: ResultsWriter | None) -> list[Record]:
-        """Run all tasks with each of the options.
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
+        """Run all types with each of the options, and print failures and notes.
 
         Raises `ExecutorError`.
         """
-        began = time.perf_counter()
-        found = [each for one in self._options for each in self._run(one, writer)]
-        failures = sum(isinstance(each.verdict, Failed) for each in found)
-        print(f"{time.perf_counter() - began:.0f} s, {failures} failures")
-        return found
+        return [each for one in self._request.each_width for each in self._records(one, writer)]
 
-    def _run(self, options: Options, writer: ResultsWriter | None) -> list[Record]:
-        """Run all tasks with one set of options."""
-        tests = {task: test_of(task, options) for task in self._tasks}
+    def _records(self, options: CaseOptions, writer: ResultsWriter | None) -> list[Record]:
+        """Run all types with one set of options."""
+        tests = dict(zip(self._tasks, self._tests(options), strict=True))
         same: dict[Test, Test] = {}
         if self._request.shares_circuits:
             pairs = same_circuits(self._tasks, options).items()
@@ -99,7 +86,6 @@ class Ts3(System):
                     replace(options, simulated=not is_shared),
                     [test for test in left if (test in same) == is_shared],
                     lambda test: command_of(options, test.type, distro=test.distro),
-                    executor=self._request.executor,
                     jobs=self._request.jobs,
                 )
                 for share in made:
@@ -107,42 +93,21 @@ class Ts3(System):
                         record.same_as = same[record.test].key if is_shared else ""
                     yield share
 
-        label = f"{options.bus_bytes}-byte bus"
-        records = kept(list(tests.values()), writer, run, lines_of, label=label)
-        if not options.bags:
-            _repeat(notes)
-        print_passes(records, "types pass")
-        if shared := sum(bool(record.same_as) for record in records):
-            print(
-                f"{shared} of {len(records)} types have the circuit of another, which was simulated"
+        records = run_and_record(
+            list(tests.values()), writer, run, lines_of, label=f"{options.bus_bytes}-byte bus"
+        )
+        for note, count in notes.items() if not options.bags else ():
+            if note and count > 1:
+                print(f"note: {count - 1} more types: {note}")
+        return records
+
+    def summary(self, records: Sequence[Record], seconds: float) -> Iterator[str]:
+        """Yield lines about the types, and one about the simulator of exported text."""
+        yield from summary_of(records, self.passes, seconds)
+        simulated = [each for each in records if each.cycles]
+        if self._request.simulator != "python" and simulated:
+            passed = sum(not each.failures for each in simulated)
+            yield (
+                f"{self._request.simulator}: replayed every cycle of {len(simulated)} types, "
+                f"{passed} pass"
             )
-        _summarize([record for record in records if record.cycles], options)
-        return counted(records)
-
-
-def _repeat(notes: Mapping[str, int]) -> None:
-    """Print for each note how many further types have it."""
-    for note, count in notes.items():
-        if note and count > 1:
-            print(f"note: {count - 1} more types: {note}")
-
-
-def _summarize(records: Sequence[Record], options: Options) -> None:
-    """Print figures of the types that were simulated."""
-    if not records:
-        return
-    seconds = sorted(record.seconds.total for record in records)
-    cycles = sum(record.cycles for record in records)
-    print(
-        f"{len(records)} different types, {sum(r.packets for r in records)} packets, "
-        f"{cycles} cycles; seconds per type: median {seconds[len(seconds) // 2]:.2f}, "
-        f"most {seconds[-1]:.1f}, {sum(seconds):.0f} in total"
-    )
-    slowest = sorted(records, key=lambda record: -record.seconds.total)[:5]
-    print("slowest:", ", ".join(f"{each.test.type} {each.seconds.total:.1f} s" for each in slowest))
-    writers = Counter(name for record in records for name in record.written_by)
-    text = ", ".join(f"{name} {count} types" for name, count in writers.items())
-    print("wire bytes:", text or "no library wrote any")
-    if options.simulator != "python":
-        passed = sum(not record.failures for record in records)
-        print(f"{options.simulator}: replayed every cycle of {len(records)} types, {passed} pass")

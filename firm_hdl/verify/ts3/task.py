@@ -9,15 +9,15 @@ from firm_hdl.cases.effort import digest, message_limit
 from firm_hdl.errors import DefinitionError
 from firm_hdl.export.build import BuildError, plan_of
 from firm_hdl.verify.results.records import Test
-from firm_hdl.verify.systems.options import LONGEST, Options, command_again
-from firm_hdl.verify.systems.system import wire_of
+from firm_hdl.verify.systems import system
+from firm_hdl.verify.systems.options import LONGEST, CaseOptions, command_again
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.wire import lay_out
 
-__all__ = ["command_of", "same_circuits", "test_of", "words_of"]
+__all__ = ["as_test", "command_of", "same_circuits", "words_of"]
 
 
-def command_of(options: Options, *names: str, distro: str | None, **more: object) -> str:
+def command_of(options: CaseOptions, *names: str, distro: str | None, **more: object) -> str:
     """Return the command that tests types again: with what `more` says, and then these options."""
     references = options.references
     given: dict[str, object] = {
@@ -40,38 +40,26 @@ def command_of(options: Options, *names: str, distro: str | None, **more: object
     return command_again(*names, **{**first, **given, **more})
 
 
-def test_of(task: TypeUnderTest, options: Options) -> Test:
+def as_test(task: TypeUnderTest, options: CaseOptions) -> Test:
     """Return the test that runs a task with some options."""
     more = [f"bag={bag}" for bag in options.bags]
     more += [] if options.longest == LONGEST else [f"longest={options.longest}"]
-    return Test(
-        system="ts3",
-        simulator=options.simulator,
-        distro=task.distro,
-        type=task.name,
-        same=task.same,
-        wire=wire_of(task.distro, options.wire),
-        bus_bytes=options.bus_bytes,
-        options=",".join([*words_of(options), *more]),
-    )
+    words = [*words_of(options), *more]
+    return system.as_test("ts3", task, options, *words, simulator=options.simulator)
 
 
-# Pytest takes functions with such names for tests, even if a test module only imports them.
-test_of.__test__ = False  # type: ignore[attr-defined]
-
-
-def words_of(options: Options, *more: str) -> list[str]:
+def words_of(options: CaseOptions, *more: str) -> list[str]:
     """Return what the cases of a type depend on, with `more` behind the seed, for a test's key."""
     own = [f"seed={options.seed}", *more]
     own += [] if options.most_cases is None else [f"cases={options.most_cases}"]
     own += [] if options.stalled else ["no-stalls"]
     own += [] if options.broken else ["no-broken"]
     own += [] if options.references is None else [f"references={'+'.join(options.references)}"]
-    return [*own, *options.folders]
+    return own
 
 
 def same_circuits(
-    tasks: Sequence[TypeUnderTest], options: Options
+    tasks: Sequence[TypeUnderTest], options: CaseOptions
 ) -> dict[TypeUnderTest, TypeUnderTest]:
     """Return the tasks whose circuit is equal to that of an earlier task, with the earlier task.
 
@@ -83,7 +71,7 @@ def same_circuits(
         try:
             message = library_of(task.distro, options).message(task.name)
             wire: Any = options.wire or message.wire
-            limit = message_limit(lay_out(message, wire).min_bytes)
+            limit = message_limit(lay_out(message, wire).least_bytes)
             plan = plan_of(message, wire, options.bus_bytes, limit)
         except (DefinitionError, BuildError, ValueError):
             # The task's own test reports the error.

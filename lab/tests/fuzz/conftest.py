@@ -25,16 +25,17 @@ def fast_compiler():
 
 
 @functools.cache
-def joined_runtime(verilator, compiler, options, own, parts):
+def joined_runtime(compiler, options, sources):
     """Join the sources of a runtime: most of the time of a compiler goes into common headers."""
-    headers = [f"-I{each}" for each in {path.parent for path in own}]
+    headers = [f"-I{each}" for each in dict.fromkeys(path.parent for path in sources)]
+    own = [path for path in sources if path.parent == build._HARNESS]
     half = len(own) // 2
     with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
         # Two files, for judge.cpp and packets.cpp have constants of the same name.
         joined = [Path(folder, "first.cpp"), Path(folder, "second.cpp")]
         joined[0].write_text(included(own[:half]))
-        joined[1].write_text(included([*own[half:], *(f"{part}.cpp" for part in parts)]))
-        made = Runtime(verilator, compiler, [*options, *headers], joined, ())
+        joined[1].write_text(included(path for path in sources if path not in own[:half]))
+        made = Runtime(compiler, [*options, *headers], joined)
     made.includes += headers
     return made
 

@@ -13,7 +13,7 @@ import firm_hdl
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
 from firm_hdl.export.folder import read_manifest
-from firm_hdl.jobs import ProgramMissingError, run_tool
+from firm_hdl.jobs import ProgramMissingError, programs, run_tool
 from firm_hdl.jobs.programs import yowasp_command
 from firm_hdl.node.bitstream import build
 from firm_hdl.node.bitstream.board import read_board
@@ -134,7 +134,7 @@ def test_without_tools_the_top_level_is_there_and_the_error_says_how_to_get_them
     def missing(*words, **options):
         return None
 
-    monkeypatch.setattr(build, "find_packaged", missing)
+    monkeypatch.setattr(programs, "find_packaged", missing)
     with pytest.raises(ProgramMissingError, match=r"pip install 'firm-hdl\[boards\]'"):
         build_bitstream(description(), copied, read_board("ulx3s-85f"))
     assert files(copied.folder / "boards" / "ulx3s-85f") == ["manifest.json", "pins.lpf", "top.v"]

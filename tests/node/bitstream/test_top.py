@@ -144,7 +144,8 @@ def test_each_mistake_is_at_its_place_in_the_description():
         (
             {"link: {kind: uart, baud: 1250000, memory_bytes: 64, packets: 2}": "link: udp"},
             "ulx3s-85f",
-            "4:7-3: ulx3s-85f has uart; for 'udp', the top level is yours to write",
+            "4:7-3: ulx3s-85f has uart, so the description needs 'link: {kind: uart}'; for 'udp', "
+            "the top level is yours to write",
         ),
         (
             {"clock_mhz: 5": "clock_mhz: 600"},

@@ -80,13 +80,14 @@ def test_messages_go_through_driver_dma_and_gateware(tmp_path):
 
 
 @pytest.mark.thorough
-def test_imus_long_texts_and_each_error(tmp_path):
+@pytest.mark.parametrize("has_sg", [False, True])
+def test_imus_long_texts_and_each_error(tmp_path, has_sg):
     description = read(_TEXT, link="{kind: axi_dma, buffer_bytes: 256}", clock_mhz="1")
     imu, large, *_ = description.topics
     imus = packets_of(imu.store("in").message, 5, most=600)
     # In one frame, and in up to five.
     texts = [string("x" * size) for size in (0, 230, 240, 1100)]
-    with ready(tmp_path, description, bits=16) as (chip, made, said):
+    with ready(tmp_path, description, bits=16, has_sg=has_sg) as (chip, made, said):
         made.graph.say(imu, *imus)
         made.graph.say(large, *texts)
         assert run_until(made, lambda: len(made.graph.got) == 9, 120), said

@@ -17,7 +17,7 @@ from firm_hdl.cli import main
 from firm_hdl.node.boards import Board
 from firm_hdl.node.boards.simulated import SimulatedBoard
 from firm_hdl.node.bridge import Bridge, bridge, command
-from firm_hdl.node.bridge.command import Status
+from firm_hdl.node.bridge.command import StatusPrinter
 from tests.node.accelerators import echo_text
 from tests.node.boards.test_boards import UdpNode
 from tests.node.bridge.fakes import ECHO, FakeBoard, FakeGraph, FakeNode
@@ -92,8 +92,8 @@ def test_a_clock_that_is_none_is_an_error(file, capsys):
         assert f"error: {error}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("link", ["udp", "tcp"])
-@pytest.mark.parametrize("lines", [0, 3])
+# Both links, with lines and without.
+@pytest.mark.parametrize(("link", "lines"), [("udp", 0), ("tcp", 3)])
 def test_the_end_of_the_input_ends_it_without_a_board(
     file, line_file, capsys, monkeypatch, link, lines
 ):
@@ -178,14 +178,14 @@ def test_another_board_ends_the_command(file, board, capsys):
 
 
 def test_signals_end_it(file, board, capsys, monkeypatch):
-    report = Status.report
+    report = StatusPrinter.report
 
     def said(self, line):
         report(self, line)
         if line.endswith("joined"):
             os.kill(os.getpid(), signal.SIGTERM)
 
-    monkeypatch.setattr(Status, "report", said)
+    monkeypatch.setattr(StatusPrinter, "report", said)
     before = signal.getsignal(signal.SIGTERM)
     options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "rtps", "--interface", "lo"]
     assert main(["node", "run", file, *options, "--domain", "161", "--quiet"]) == 0
@@ -196,7 +196,7 @@ def test_signals_end_it(file, board, capsys, monkeypatch):
 def test_a_second_ctrl_c_ends_the_last_questions(file, board, capsys, monkeypatch):
     """The board answers no more; without the second one, it is gone after 5 s."""
     monkeypatch.setattr(Board, "end_seconds", 60)
-    report = Status.report
+    report = StatusPrinter.report
 
     def said(self, line):
         report(self, line)
@@ -205,7 +205,7 @@ def test_a_second_ctrl_c_ends_the_last_questions(file, board, capsys, monkeypatc
             for seconds in (0.3, 0.6):
                 threading.Timer(seconds, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 
-    monkeypatch.setattr(Status, "report", said)
+    monkeypatch.setattr(StatusPrinter, "report", said)
     options = ["--board", f"udp://127.0.0.1:{board.port}", "--graph", "rtps", "--interface", "lo"]
     assert main(["node", "run", file, *options, "--domain", "162"]) == 0
     err = capsys.readouterr().err

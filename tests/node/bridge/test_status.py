@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from firm_hdl.node.bridge import command
-from firm_hdl.node.bridge.command import Status, account, status_line
+from firm_hdl.node.bridge.command import StatusPrinter, account, status_line
 from firm_hdl.node.bridge.counters import BridgeCounters
 from tests.node.bridge.fakes import ECHO
 
@@ -65,7 +65,7 @@ def line(to_board, to_graph):
 def test_rates_on_a_terminal_are_replaced_each_time(clock):
     screen, bridge = Screen(True), bridge_with()
     bridge.counters.to_board["/heard"] = 1000
-    shown = Status(screen)
+    shown = StatusPrinter(screen)
     shown.show(bridge)
     # What passed before the first line is no rate.
     assert screen.read_new() == line(0, 0)
@@ -87,7 +87,7 @@ def test_rates_on_a_terminal_are_replaced_each_time(clock):
 
 def test_rates_elsewhere_are_lines_of_their_own_now_and_then(clock):
     screen, bridge = Screen(False), bridge_with()
-    shown, seconds = Status(screen), []
+    shown, seconds = StatusPrinter(screen), []
     for second in range(31):
         bridge.counters.to_board["/heard"] += 4
         shown.show(bridge)
@@ -103,7 +103,7 @@ def test_rates_elsewhere_are_lines_of_their_own_now_and_then(clock):
 @pytest.mark.parametrize("is_terminal", [False, True])
 def test_a_quiet_one_says_only_what_happens(clock, is_terminal):
     screen = Screen(is_terminal)
-    shown = Status(screen, quiet=True)
+    shown = StatusPrinter(screen, quiet=True)
     clock.now += 60.0
     shown.show(bridge_with())
     shown.report("it is gone")

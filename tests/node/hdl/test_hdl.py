@@ -149,7 +149,6 @@ MISTAKES = [
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("language", "change", "text"), MISTAKES)
 def test_mistakes_are_shown_where_they_are(written, language, change, text):
     with pytest.raises(DefinitionError) as caught:

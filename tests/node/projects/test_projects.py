@@ -22,8 +22,13 @@ import pytest
 
 from firm_hdl.cli import main
 from firm_hdl.errors import UserError
+from firm_hdl.export.registers import register_maps
+from firm_hdl.frontend import Library
 from firm_hdl.node import Node, read_description
 from firm_hdl.node.top import node_ports
+from firm_hdl.plan import build_plan
+from firm_hdl.registers import c_header
+from firm_hdl.wire import lay_out
 from tests.node.accelerators import echo_text
 from tests.node.boards.dma_model import AxiDma
 from tests.node.bridge.fakes import FakeNode
@@ -65,7 +70,7 @@ PINS = {
         "slave S_AXI_LITE S_AXIS_S2MM"
     ),
     "proc_sys_reset": "in slowest_sync_clk ext_reset_in out peripheral_aresetn",
-    "smartconnect": "in aclk aresetn slave S00_AXI S01_AXI master M00_AXI",
+    "smartconnect": "in aclk aresetn slave S00_AXI S01_AXI master M00_AXI M01_AXI",
     "util_vector_logic": "in Op1 Op2 out Res",
     "ilvector_logic": "in Op1 Op2 out Res",
 }
@@ -86,9 +91,10 @@ def node_pins(description):
     """Return the pins of a node's IP: streams, and ports that are in none; and widths of ports."""
     found, widths = {}, {}
     for port in node_ports(Node(description)):
-        stream = re.match(r"([sm])_axis(?=_t)", port.name)
+        stream = re.match(r"([sm])_axis(?=_t)|(s)_axi(?=_)", port.name)
         ways = {"s": "slave", "m": "master"}
-        found[stream[0] if stream else port.name] = ways[stream[1]] if stream else port.direction
+        way = ways[stream[1] or stream[2]] if stream else port.direction
+        found[stream[0] if stream else port.name] = way
         widths[port.name] = port.width
     return found, widths
 
@@ -103,15 +109,15 @@ source design.tcl
 
 
 @pytest.mark.parametrize(
-    ("board", "bus", "gate"),
+    ("board", "bus", "gate", "more"),
     [
-        ("kria", 8, "ip:util_vector_logic"),
-        ("kria", 8, "inline_hdl:ilvector_logic"),
-        ("pynq", 1, ""),
+        ("kria", 8, "ip:util_vector_logic", "registers: axi4lite"),
+        ("kria", 8, "inline_hdl:ilvector_logic", ""),
+        ("pynq", 1, "", ""),
     ],
 )
-def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus, gate):
-    file, out = init(board, LOOP.replace("BUS", str(bus)), tmp_path)
+def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus, gate, more):
+    file, out = init(board, LOOP.replace("BUS", str(bus)) + more, tmp_path)
     places = ("system.runs/impl_1", "system.gen/sources_1/bd/system/hw_handoff")
     for place, made in zip(places, ("system_wrapper.bit", "system.hwh"), strict=True):
         (out / "build/vivado" / place).mkdir(parents=True)
@@ -138,7 +144,9 @@ def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus, gate):
         for pin, way in (own if cell == "node" else pins_of(PINS[kind.split(":")[2]])).items()
     }
     # Inputs that are open on purpose: one of a SmartConnect with one slave, and no pins of a node.
-    del ways["control/S01_AXI"]
+    del ways["control/S01_AXI"], ways["memory/M01_AXI"]
+    if not more:
+        del ways["control/M01_AXI"]
     wires = Counter()
     for call in calls:
         if call[0].startswith("connect_bd_"):
@@ -288,7 +296,7 @@ class Clocks(type):
         cls.divisors = min(both, key=lambda each: abs(1000 / math.prod(each) - mhz))
 
 
-def fake_pynq(node, address=0x1000_0000, size=1 << 18):
+def fake_pynq(node, address=0x1000_0000, size=1 << 19):
     """Return a module like PYNQ's: an overlay with a DMA, and a node behind it."""
     seen, lock = np.zeros(size, "u1"), threading.RLock()
     fabric = Fabric(node)
@@ -368,10 +376,89 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
         exec(cells[0], {})
 
 
+MIXED = """\
+uint8 int
+float64 b
+string name
+bool c
+Empty nothing
+float32[2] f
+Point[] points
+"""
+STUBS = {
+    "stdio.h": "typedef int FILE;\nextern FILE *const stdout;\n#define FDEV_SETUP_STREAM(...) 0\n"
+    "int printf(const char *, ...) __attribute__((format(printf, 1, 2)));\n",
+    "generated/csr.h": "int uart_txfull_read(void), uart_txempty_read(void);\n"
+    "int reader_messages_read(void), reader_errors_read(void);\n"
+    "void uart_rxtx_write(int), report_ev_enable_write(int), main_finish_write(int);\n",
+    "generated/mem.h": "#define COMMAND_BASE 0x1000UL\n#define REPORT_BASE 0x2000UL\n",
+    "generated/soc.h": "#define REPORT_INTERRUPT 1\n",
+    "irq.h": "void irq_setmask(unsigned), irq_setie(unsigned);\n",
+}
+
+
+def test_a_soc_of_litex_is_for_the_type_of_the_user(tmp_path, monkeypatch):
+    package = tmp_path / "it's $my #1" / "mix_msgs"
+    texts = {"Mixed": MIXED, "Empty": "", "Point": "float64 x\nint8 y\n"}
+    for name, text in texts.items():
+        (package / "msg" / f"{name}.msg").parent.mkdir(parents=True, exist_ok=True)
+        (package / "msg" / f"{name}.msg").write_text(text)
+    (package / "package.xml").write_text("<package><name>mix_msgs</name></package>")
+    out = tmp_path / "out"
+    type_file = str(package / "msg" / "Mixed.msg")
+    assert main(["board", "init", "litex", type_file, "--distro", "jazzy", "-o", str(out)]) == 0
+    soc, base = (out / "soc.py").read_text(), "mix_msgs_msg_Mixed_cdr_8"
+    assert f'NAME = "{base}"' in soc and compile(soc, "soc.py", "exec")
+    found = re.findall(r"self.reader.m_axis_(\w+).connect\(self.writer.s_axis_(\w+)\),", soc)
+    leaves = (
+        "int_field b name_length name_items c nothing_structure_needs_at_least_one_member f_items "
+        "points_length points_item_x points_item_y"
+    )
+    assert found == [(each, each) for each in leaves.split()]
+    # The firmware, with the headers of the build.
+    message = Library("jazzy", paths=[package]).message("mix_msgs/msg/Mixed")
+    layouts = register_maps(message, build_plan(lay_out(message), bus_bytes=8))
+    headers = {f"{base}_{way}_registers.h": c_header(each) for way, each in layouts.items()}
+    for name, text in (STUBS | headers).items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    cc = [need("a C compiler", shutil.which("cc")), "-fsyntax-only", "-Wall", "-Werror"]
+    subprocess.run([*cc, "-I", tmp_path, out / "main.c"], check=True)
+    # `make` asks for it with the user's folder.
+    (tmp_path / "firm-hdl").write_text('#!/bin/sh\nprintf "%s\\n" "$@" >asked.txt\n')
+    (tmp_path / "firm-hdl").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
+    make = [need("make", shutil.which("make")), f"work/jazzy/{base}/manifest.json"]
+    subprocess.run(make, cwd=out, check=True)
+    asked = (out / "asked.txt").read_text().splitlines()
+    assert asked[:5] == ["build", "mix_msgs/msg/Mixed", "--distro", "jazzy", "--path"]
+    assert (out / asked[5]).samefile(package)
+    assert asked[6:] == ["--registers", "--ip", "litex", "--out", "work"]
+
+
+def test_the_page_of_litex_quotes_the_project(tmp_path):
+    assert main(["board", "init", "litex", "-o", str(tmp_path / "out")]) == 0
+    page = (Path(__file__).parents[3] / "docs/howto/litex.md").read_text()
+    quotes = re.findall(r"^```(py|c)\n(.*?)^```", page, re.M | re.S)
+    files = {"py": "soc.py", "c": "main.c"}
+    assert {kind for kind, _ in quotes} == files.keys()
+    for kind, text in quotes:
+        assert text in (tmp_path / "out" / files[kind]).read_text()
+
+
 def test_what_is_no_project_is_refused_and_changes_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["board", "init", "kv261"]) == 1
     assert "there are no projects for 'kv261', but for kria, kv260" in capsys.readouterr().err
+    for arguments, said in (
+        (["std_msgs/msg/String"], "std_msgs/msg/String cannot have registers"),
+        (["node.yaml"], "for a node, 'node build --ip litex' writes a module"),
+    ):
+        assert main(["board", "init", "litex", *arguments]) == 1
+        assert said in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["board", "init", "kria", "--path", "."])
+    assert "a node has its own" in capsys.readouterr().err
     Path("n.yaml").write_text("node: n\nlink: udp\nsubscribe: {/a: {type: std_msgs/msg/Bool}}\n")
     assert main(["board", "init", "KV260", "n.yaml"]) == 1
     assert "n.yaml:2:7: error: a project for 'kria' needs the link 'axi_dma'" in (

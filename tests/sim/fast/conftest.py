@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.jobs.caches import cache_folder
 from firm_hdl.sim import StallPlan
 from firm_hdl.sim.fast import EngineName, FastSimulation
 from firm_hdl.sim.fast.compilers import program_of, verilated_source
@@ -24,14 +25,18 @@ Open = Callable[..., FastSimulation]
 
 @pytest.fixture(scope="session")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the program of `Awkward`, which is compiled by one of pytest's processes."""
+    """The user's folder of programs, with that of `Awkward`.
 
-    def make(folder: Path) -> None:
+    One of pytest's processes compiles it, unless an earlier `make test` did: it takes 15 s.
+    """
+
+    def make(_: Path) -> None:
         design = Awkward()
         source = partial(verilated_source, Top(design, ports_of(design)))
-        program_of(source, options=OPTIONS, cache=folder)
+        program_of(source, options=OPTIONS)
 
-    return made_once(tmp_path_factory, "programs", make)
+    made_once(tmp_path_factory, "programs", make)
+    return cache_folder()
 
 
 @pytest.fixture

@@ -11,13 +11,13 @@ import re
 import pytest
 
 from firm_hdl.verify.report.formats import FORMATS
-from firm_hdl.verify.report.summary import Counts, outcomes_of, summarise
+from firm_hdl.verify.report.summary import outcomes_of, summarise
 from firm_hdl.verify.report.tables import (
     coverage_table,
     facts,
 )
 from firm_hdl.verify.results.records import PlanCoverage
-from firm_hdl.verify.results.verdict import Failed, NotJudged, Passed
+from firm_hdl.verify.results.verdict import Counts, Failed, NotJudged, Passed
 from tests.verify.report.samples import a_record, a_test, mixed, run_of
 
 

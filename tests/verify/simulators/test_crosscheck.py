@@ -12,7 +12,7 @@ import firm_hdl.verify.simulators.programs as programs
 from firm_hdl.export.top import Top
 from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.simulators.trace import read_row
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.vhdl.convert import Vhdl, convert
 from tests.verify.judged import accept, assert_passed
 from tests.verify.samples import SAMPLE
@@ -22,7 +22,7 @@ HEADER = "std_msgs/msg/Header"
 
 def accepted(distro: str, name: str, bus_bytes: int = 8, **options) -> Record:
     chosen = {"most_cases": 3, "simulator": "ghdl", **options}
-    return accept(distro, name, Options(bus_bytes=bus_bytes, **chosen))
+    return accept(distro, name, CaseOptions(bus_bytes=bus_bytes, **chosen))
 
 
 # Other tests of a folder with VHDL have loops over strings, those below have bounds; here are no

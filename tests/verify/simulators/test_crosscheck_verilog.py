@@ -15,7 +15,7 @@ from firm_hdl.verify.results.records import Record
 from firm_hdl.verify.simulators import programs
 from firm_hdl.verify.simulators.programs import Icarus, TextSimulator, Verilator
 from firm_hdl.verify.simulators.trace import Trace
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verilog import convert
 from tests.depth import by_depth
 from tests.verify.judged import accept, assert_passed
@@ -29,7 +29,7 @@ def accepted(
     simulator: TextSimulator, distro: str, name: str, bus_bytes: int = 8, **more
 ) -> Record:
     chosen = {"most_cases": 3, "simulator": NAMES[type(simulator)], **more}
-    return accept(distro, name, Options(bus_bytes=bus_bytes, **chosen))
+    return accept(distro, name, CaseOptions(bus_bytes=bus_bytes, **chosen))
 
 
 WIDE = ("lyrical", "service_msgs/msg/ServiceEventInfo", 16)

@@ -11,7 +11,7 @@ from firm_hdl import Deserializer, Serializer, load_message
 from firm_hdl.sim import RunOptions, Stalls
 from firm_hdl.sim.harness import Harness
 from firm_hdl.verify.simulators.trace import Trace, read_row
-from firm_hdl.verify.ts3.circuit import first_difference, replay_failures
+from firm_hdl.verify.ts3.circuit import first_wrong_port, replay_failures
 
 PACKETS = [bytes((0, 1, 0, 0, value)) for value in (1, 0, 1)]
 
@@ -79,8 +79,8 @@ def test_missing_and_surplus_rows_are_reported(recorded, fewer):
     trace, _ = recorded
     rows = trace.expected
     count = len(rows)
-    assert first_difference(trace, rows[:-fewer]) == f"{count - fewer} cycles instead of {count}"
-    assert first_difference(trace, [*rows, *[""] * fewer]) == (
+    assert first_wrong_port(trace, rows[:-fewer]) == f"{count - fewer} cycles instead of {count}"
+    assert first_wrong_port(trace, [*rows, *[""] * fewer]) == (
         f"{count + fewer} cycles instead of {count}"
     )
 

@@ -14,8 +14,7 @@ from firm_hdl.verify.systems import system
 from firm_hdl.verify.systems.system import (
     Trial,
     counted,
-    kept,
-    recorded,
+    run_and_record,
     run_tests,
 )
 from tests.verify.report.samples import a_record, a_test
@@ -31,28 +30,22 @@ def clock(monkeypatch):
 
 def test_a_record_has_its_times_and_an_exception_becomes_its_verdict(clock):
     test = a_test()
-
-    def judge(trial, **found):
-        for name, value in found.items():
-            setattr(trial, name, value)
-
-    found = recorded(test, lambda trial: judge(trial, judged=7))
+    with Trial.of(test) as trial:
+        trial.judged = 7
+    found = trial.end()
     assert (found.test, found.verdict) == (test, Passed(7))
     assert (found.seconds, found.cpu_seconds) == (Seconds(generation=1), 100.0)
-
-    def fail(trial, error):
-        trial.watch.enter("testing")
-        raise error
-
     for error, verdict in (
         (NotJudgedError("nobody knows"), NotJudged("nobody knows")),
         (NotJudgedError(), NotJudged("NotJudgedError")),
+        (KeyError("x"), Failed(("KeyError: 'x'",))),
     ):
-        found = recorded(test, lambda trial, error=error: fail(trial, error))
+        with Trial.of(test) as trial:
+            trial.watch.enter("testing")
+            raise error
+        found = trial.end()
         assert found.verdict == verdict
         assert found.seconds == Seconds(generation=1, testing=1)
-    found = recorded(test, lambda trial: fail(trial, KeyError("x")))
-    assert isinstance(found.verdict, Failed) and "KeyError" in found.verdict.failures[0]
 
 
 SILENT = NotJudged("nobody knows")
@@ -101,7 +94,7 @@ def test_records_are_kept_in_a_file_and_are_not_made_again(tmp_path, capsys):
 
     def again(tests):
         with ResultsWriter(path, options={}, planned=TESTS) as writer:
-            found = kept(tests, writer, run, lines_of, label="", unit="thing")
+            found = run_and_record(tests, writer, run, lines_of, label="", unit="thing")
             assert [record.test for record in found] == tests
 
     again(TESTS[:2])
@@ -111,11 +104,13 @@ def test_records_are_kept_in_a_file_and_are_not_made_again(tmp_path, capsys):
     assert made == [TESTS[:2], TESTS[2:]]
     assert capsys.readouterr().out == f"2 of 3 things have a result in {path}\nline of p/C\n"
     # Without a file, all are made.
-    assert len(kept(TESTS, None, run, lines_of, label="")) == 3 and made[2:] == [TESTS]
+    assert len(run_and_record(TESTS, None, run, lines_of, label="")) == 3 and made[2:] == [TESTS]
 
 
 def fails_often(context, test):
-    return recorded(test, lambda trial: trial.failures.extend(["no"] * (MOST_FAILURES + 3)))
+    trial = Trial.of(test)
+    trial.failures += ["no"] * (MOST_FAILURES + 3)
+    return trial.end()
 
 
 def test_of_many_failures_the_first_are_kept_and_the_others_counted():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import (
     TypeUnderTest,
     UnknownTypeError,
@@ -22,14 +22,14 @@ def test_a_relative_folder_is_that_of_the_working_folder(tmp_path, monkeypatch):
     for name in ("One", "Two"):
         make_files(tmp_path / name / "src", {f"p/msg/{name}.msg": "int8 x\n"})
         monkeypatch.chdir(tmp_path / name)
-        library = library_of("lyrical", Options(paths=("src",)))
-        assert library is library_of("lyrical", Options(paths=("src",)))
+        library = library_of("lyrical", CaseOptions(paths=("src",)))
+        assert library is library_of("lyrical", CaseOptions(paths=("src",)))
         found.append([each for each in library.interfaces() if each.startswith("p/")])
     assert found == [["p/msg/One"], ["p/msg/Two"]]
 
 
 def test_a_recording_is_a_source_without_any_folder(tmp_path):
-    library = library_of("lyrical", Options(bags=(str(make_recording(tmp_path, "mcap")),)))
+    library = library_of("lyrical", CaseOptions(bags=(str(make_recording(tmp_path, "mcap")),)))
     assert library.message("my_msgs/msg/Wheel").name == "my_msgs/msg/Wheel"
 
 

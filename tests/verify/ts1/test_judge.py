@@ -115,18 +115,6 @@ def test_a_part_that_we_cannot_compute_is_a_difference(court):
     assert isinstance(found.verdict, Failed) and "raises ValueError" in found.verdict.failures[0]
 
 
-def test_changed_definitions_are_only_for_oracles_that_judge_them(court):
-    here = court("lyrical", {"p/msg/A.msg": "int8 x\n", "p/srv/S.srv": "---\n"})
-    case, service = here.universe.select(["p/A", "p/S"])
-    mutant = replace(case, text="int8\n", before=case.text)
-    oracle = FixedOracle(Refused("no"))
-    assert judge(here.universe, oracle, mutant).verdict == Passed(1)
-    oracle.judges_changes = False
-    assert judge(here.universe, oracle, mutant) is None
-    assert isinstance(judge(here.universe, oracle, case).verdict, Failed)
-    assert judge(here.universe, oracle, service) is None
-
-
 MISTAKES = {
     "a field is dropped": lambda m: replace(m, fields=m.fields[:-1]),
     "two fields are swapped": lambda m: replace(m, fields=m.fields[::-1]),

@@ -74,20 +74,6 @@ def test_definitions_of_an_active_workspace_come_after_those_of_the_folders(tmp_
         assert (tmp_path / "all" / f"{name}.msg").read_text() == text
 
 
-def test_changed_texts_are_read_in_place_of_the_files(universe_of):
-    universe = universe_of("noetic", FILES)
-    (case,) = universe.select(["p/A"])
-    mutant = replace(case, text="int8 other\n", before=case.text)
-    assert [each.name for each in universe.interface(mutant).fields] == ["other"]
-    assert universe.show(mutant) == "int8 other\n"
-    assert universe.show(case) == "q/B b\n  int8 x\n"
-    # The change affects only that definition.
-    (other,) = universe.select(["q/B"])
-    both = replace(other, text="int8 y\n", before=other.text)
-    assert [each.name for each in universe.interface(both).fields] == ["y"]
-    assert [each.name for each in universe.interface(other).fields] == ["x"]
-
-
 def test_a_file_that_is_no_text_is_a_definition_as_well(universe_of, tmp_path):
     universe_of("lyrical", {"p/msg/A.msg": "int8 x\n"})
     folder = tmp_path / "src" / "p"
@@ -148,17 +134,11 @@ def test_definitions_are_written_as_they_are_wherever_they_are_from(tmp_path):
         assert (folder / case.package / case.kind / case.file).read_text() == case.text
 
 
-def test_a_case_is_changed_by_another_text():
-    text = "a\nb\nc\nd\n"
+def test_a_case_has_the_names_of_its_dialect():
     case = DefinitionCase(
-        dialect="ros1", package="p", kind="srv", name="S", language="srv", text=text
+        dialect="ros1", package="p", kind="srv", name="S", language="srv", text="a\n"
     )
-    names = (case.full_name, case.spelled_name, case.file)
-    assert names == ("p/S", "p/srv/S", "S.srv") and not case.is_changed
+    assert (case.full_name, case.spelled_name, case.file) == ("p/S", "p/srv/S", "S.srv")
     ros2 = replace(case, dialect="ros2", kind="msg", language="idl")
     assert (ros2.full_name, ros2.spelled_name, ros2.file) == ("p/msg/S", "p/msg/S", "S.idl")
-    changed = replace(case, text="a\nx\tb\nc\n", before=text)
-    assert changed.is_changed
-    # A text may have been empty before, or have become empty.
-    assert replace(case, before="").is_changed
-    assert replace(case, source="other") == case != changed
+    assert replace(case, source="other") == case

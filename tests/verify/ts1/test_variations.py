@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import re
 
 import pytest
 
@@ -19,11 +19,6 @@ FILES = {
     "q/msg/X.msg": "int8 x\n",
     "q/srv/X.srv": "int8 x\n---\n",
     "q/action/X.action": "int8 x\n---\n---\n",
-    "p/msg/T.idl": "module p { module msg { struct T { long a; }; }; };",
-    "p/srv/A.idl": "module p { module srv { struct A_Request { long a; }; "
-    "struct A_Response { long a; }; }; };",
-    "p/action/A.idl": "module p { module action { struct A_Goal { long a; }; "
-    "struct A_Result { long a; }; struct A_Feedback { long a; }; }; };",
 }
 
 
@@ -40,13 +35,16 @@ FILES = {
 def test_variations_are_read_as_rosidl_reads_them_or_differ_on_purpose(
     court, texts, expected, is_refused_here
 ):
-    here = court("lyrical", FILES)
-    cases = {case.kind: case for case in here.universe.select(["p/msg/T", "p/srv/A", "p/action/A"])}
+    # Each text is the file of a package of its own, and names this one.
+    files, types = dict(FILES), []
+    for number, text in enumerate(texts.values()):
+        kind = "action" if "A_Goal" in text else "srv" if "A_Re" in text else "msg"
+        types.append(f"p{number}/{kind}/{'T' if kind == 'msg' else 'A'}")
+        files[f"{types[-1]}.idl"] = re.sub(r"\bp(?= \{|::)", f"p{number}", text)
+    here = court("lyrical", files)
     oracle = here.oracle("rosidl_parser")
     found = {}
-    for name, text in texts.items():
-        kind = "action" if "A_Goal" in text else "srv" if "A_Re" in text else "msg"
-        case = replace(cases[kind], text=text, before="")
+    for name, case in zip(texts, here.universe.select(types), strict=True):
         ours = read(here.universe, case)
         verdict = judge(here.universe, oracle, case, ours).verdict
         is_refused = isinstance(ours, DefinitionError)

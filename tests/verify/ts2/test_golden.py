@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from firm_hdl.errors import UserError
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.results.verdict import Failed, Passed
@@ -69,12 +70,12 @@ def test_a_removed_type_is_a_problem(folder):
 
 def test_a_file_that_is_no_plan_is_refused(folder):
     (folder / "lyrical" / "x.yaml").write_text("leaves: 3\n")
-    with pytest.raises(ValueError, match=r"x\.yaml': Not a plan: "):
+    with pytest.raises(UserError, match=r"x\.yaml': Not a plan: "):
         read_golden(folder)
     (folder / "mars").mkdir()
     (folder / "mars" / "y.yaml").write_text("")
     (folder / "lyrical" / "x.yaml").unlink()
-    with pytest.raises(ValueError, match="not below a distribution's name"):
+    with pytest.raises(UserError, match="not below a distribution's name"):
         read_golden(folder)
 
 

@@ -10,7 +10,7 @@ from firm_hdl.plan import build_plan
 from firm_hdl.verify.results.file import read_results
 from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.systems.options import Request
-from firm_hdl.verify.systems.system import recorded
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts2 import system as ts2
 from firm_hdl.verify.ts2.golden import add
 from firm_hdl.wire import lay_out
@@ -21,7 +21,9 @@ STRING, TWIST = "std_msgs/msg/String", "geometry_msgs/msg/Twist"
 
 def checked(name, *, wire=None, bus_bytes=8):
     test = Test(system="ts2", distro="lyrical", type=name, bus_bytes=bus_bytes)
-    return recorded(test, lambda trial: ts2.check_plan(load_message(name), wire, trial))
+    with Trial.of(test) as trial:
+        ts2.check_plan(load_message(name), wire, trial)
+    return trial.end()
 
 
 def test_the_wire_that_was_asked_for_reaches_the_plans(tmp_path, capsys):

@@ -13,7 +13,7 @@ from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import DEFAULT_DISTRO
 from firm_hdl.plan.tree import Step
 from firm_hdl.verify.results.records import Test
-from firm_hdl.verify.systems.system import recorded
+from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts2 import system as ts2
 from tests.frontend.workspace import make_files
 from tests.verify.judged import assert_passed
@@ -24,7 +24,9 @@ GOLDEN = Path(__file__).parents[1] / "golden"
 def checked(name, distro=DEFAULT_DISTRO, *, wire=None, bus_bytes=8):
     test = Test(system="ts2", distro=distro, type=name, bus_bytes=bus_bytes)
     message = load_message(name, distro=distro)
-    return recorded(test, lambda trial: ts2.check_plan(message, wire, trial))
+    with Trial.of(test) as trial:
+        ts2.check_plan(message, wire, trial)
+    return trial.end()
 
 
 @pytest.mark.parametrize("bus_bytes", [1, 8, 64])

@@ -13,7 +13,7 @@ import firm_hdl.verify.ts3.circuit as circuit
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.gateware.signatures import Status
 from firm_hdl.verify.results.verdict import Passed
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from tests.depth import by_depth
 from tests.verify.judged import accept
 
@@ -32,7 +32,7 @@ HEADER = "std_msgs/msg/Header"
     ],
 )
 def test_each_packet_that_is_compared_counts_once(options, judged, sent):
-    given = Options(most_cases=4, references=(), **options)
+    given = CaseOptions(most_cases=4, references=(), **options)
     result = accept("lyrical", "std_msgs/msg/Bool", given)
     assert (result.verdict, result.packets) == (Passed(judged), sent)
 
@@ -126,7 +126,7 @@ def test_faults_in_hardware_are_found(monkeypatch, which, fault, output):
     original = {"Serializer": Serializer, "Deserializer": Deserializer}[which]
     made = lambda message, **options: fault(original(message, **options))  # noqa: E731
     monkeypatch.setattr(circuit, which, made)
-    result = accept("humble", HEADER, Options(most_cases=by_depth(5, None)))
+    result = accept("humble", HEADER, CaseOptions(most_cases=by_depth(5, None)))
     assert any(output in failure for failure in result.failures), result.failures
 
 
@@ -152,7 +152,7 @@ def test_all_outputs_of_a_run_are_judged(monkeypatch, number):
             return seen
 
     monkeypatch.setattr(circuit, "Harness", ChangedHarness)
-    result = accept("humble", "std_msgs/msg/UInt8", Options(most_cases=2))
+    result = accept("humble", "std_msgs/msg/UInt8", CaseOptions(most_cases=2))
     assert len(runs) == len(RUNS)
     where = RUNS[number]
     assert all(failure.startswith(where) for failure in result.failures)
@@ -169,7 +169,7 @@ def test_fault_in_the_golden_model_is_found(monkeypatch):
         return replace(decoded, transfers=decoded.transfers[:-1])
 
     monkeypatch.setattr(acceptance, "decode", decode)
-    result = accept("humble", HEADER, Options(broken=False, stalled=False))
+    result = accept("humble", HEADER, CaseOptions(broken=False, stalled=False))
     assert any(f.startswith("golden model, case 0 of") for f in result.failures)
     assert not any(f.startswith("hardware") for f in result.failures)
 
@@ -191,7 +191,7 @@ def refuse(found):
 def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, output):
     original = getattr(acceptance, which)
     monkeypatch.setattr(acceptance, which, lambda *given: change(original(*given)))
-    result = accept("humble", "std_msgs/msg/UInt8", Options(simulated=False))
+    result = accept("humble", "std_msgs/msg/UInt8", CaseOptions(simulated=False))
     for failure in result.failures:
         assert failure.startswith("golden model, case ") and f": {output}" in failure
     # One wrong answer hides no other one.
@@ -199,7 +199,7 @@ def test_each_answer_of_the_golden_model_is_judged(monkeypatch, which, change, o
 
 
 def test_unknown_types_fail_and_say_how_to_repeat():
-    result = accept("humble", "no_msgs/msg/Such", Options(bus_bytes=4, seed=3, stalled=False))
+    result = accept("humble", "no_msgs/msg/Such", CaseOptions(bus_bytes=4, seed=3, stalled=False))
     assert len(result.failures) == 1
     assert result.command == (
         "firm-hdl verify --distro humble --bus-bytes 4 --seed 3 --no-stalls no_msgs/msg/Such"

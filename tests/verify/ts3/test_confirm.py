@@ -17,14 +17,14 @@ from firm_hdl.verify.references.clients import (
     usable_references,
 )
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.ts3.confirm import confirm
 from tests.tools import need
 from tests.verify.judged import accept, assert_passed
 
 FAST_CDR = ("fastcdr", "fastcdr-2.2", "fastcdr-2.3")
 CDR = (*FAST_CDR, "cyclonedds")
-SMALL = Options(most_cases=4, stalled=False, broken=False)
+SMALL = CaseOptions(most_cases=4, stalled=False, broken=False)
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +69,7 @@ def test_result_names_the_references():
     result = accept("lyrical", "std_msgs/msg/Bool", SMALL)
     assert_passed(result)
     assert result.written_by == ("rosbags", *CDR)
-    none = accept("lyrical", "std_msgs/msg/Bool", Options(most_cases=2, references=()))
+    none = accept("lyrical", "std_msgs/msg/Bool", CaseOptions(most_cases=2, references=()))
     assert none.written_by == ("rosbags",)
     assert none.command.endswith(" --reference none std_msgs/msg/Bool")
 
@@ -82,7 +82,7 @@ def test_known_divergence_hides_no_other(monkeypatch):
         return [answer[:-1] for answer in right(self, values)]
 
     monkeypatch.setattr(type(codec), "encode_all", without_the_last_byte)
-    options = Options(simulated=False, references=("cyclonedds",))
+    options = CaseOptions(simulated=False, references=("cyclonedds",))
     result = accept("lyrical", "sensor_msgs/msg/Joy", options)
     assert len(result.failures) > 6
     assert all("cyclonedds writes" in text for text in result.failures)
@@ -97,11 +97,11 @@ def test_named_reference_that_cannot_confirm_is_no_pass(capsys):
 
 
 def test_wide_text_is_judged_with_a_reference(tmp_path, make_wide):
-    options = Options(most_cases=6, paths=(str(make_wide),))
+    options = CaseOptions(most_cases=6, paths=(str(make_wide),))
     result = accept("lyrical", "p/msg/Wide", options)
     assert_passed(result)
     assert result.written_by == ("rosbags", *FAST_CDR) and result.cases == 6
-    alone = accept("lyrical", "p/msg/Wide", Options(paths=(str(make_wide),), references=()))
+    alone = accept("lyrical", "p/msg/Wide", CaseOptions(paths=(str(make_wide),), references=()))
     assert alone.verdict == NotJudged("rosbags has no wstring, which p/msg/Wide.a is")
 
 

@@ -19,7 +19,7 @@ from firm_hdl.covering.command import read_chosen
 from firm_hdl.export.build import plan_of
 from firm_hdl.frontend import Library
 from firm_hdl.plan import DEFAULT_MAX_MESSAGE_BYTES
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from tests.depth import THOROUGH, by_depth
 from tests.verify.judged import NAN_KEY, accept, assert_passed
 from tests.verify.ts3.stand_ins import STAND_INS, stand_in_package
@@ -66,12 +66,12 @@ IN_HARDWARE = re.compile("layout: |plan: |definition: (?!constant |default )")
 KNOWN = {("lyrical", "sensor_msgs/msg/Joy"): (NAN_KEY,)}
 
 
-def options_of(distro: str, name: str) -> Options:
+def options_of(distro: str, name: str) -> CaseOptions:
     """Return the options of a type; all cases are for `make nightly`."""
     if THOROUGH:
-        return Options(bus_bytes=8)
+        return CaseOptions(bus_bytes=8)
     is_damaged = (KEPT[distro].index(name) + DISTROS.index(distro)) % 2 == 0
-    return Options(
+    return CaseOptions(
         bus_bytes=8,
         most_cases=MOST_CASES,
         stalled=not is_damaged,
@@ -100,7 +100,7 @@ def stand_ins(tmp_path_factory):
 )
 @pytest.mark.sampled(4)
 def test_a_small_type_with_features_of_large_ones_passes(stand_ins, distro, name):
-    options = Options(bus_bytes=8, most_cases=by_depth(MOST_CASES, None), paths=(stand_ins,))
+    options = CaseOptions(bus_bytes=8, most_cases=by_depth(MOST_CASES, None), paths=(stand_ins,))
     result = accept(distro, f"stand_ins/msg/{name}", options)
     assert assert_passed(result) >= 2 * result.cases > 0
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import pytest
 
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import collect_tasks
 from tests.depth import THOROUGH, by_depth
 from tests.verify.judged import accept, assert_passed
@@ -26,7 +26,7 @@ SIMULATED = by_depth(24, 1)
 @pytest.mark.sampled(45)
 def test_every_type_passes(index):
     task = TASKS[index]
-    options = Options(
+    options = CaseOptions(
         bus_bytes=WIDTHS[index // SIMULATED % len(WIDTHS)],
         most_cases=1 if index < LARGEST and not THOROUGH else 3,
         stalled=THOROUGH or index % (2 * SIMULATED) == 0,
@@ -42,5 +42,5 @@ def test_every_type_passes(index):
 def test_a_sample_passes_on_other_buses(index):
     task = TASKS[index]
     width = OTHER_WIDTHS[SAMPLE.index(index) % len(OTHER_WIDTHS)]
-    result = accept(task.same[-1], task.name, Options(bus_bytes=width, most_cases=3))
+    result = accept(task.same[-1], task.name, CaseOptions(bus_bytes=width, most_cases=3))
     assert_passed(result)

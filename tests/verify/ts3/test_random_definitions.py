@@ -10,7 +10,7 @@ from firm_hdl.cases.effort import work_of
 from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.plan import build_plan
 from firm_hdl.verify.results.records import Test
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.system import Trial
 from firm_hdl.verify.ts3.acceptance import accept_message
 from firm_hdl.wire import lay_out
@@ -44,9 +44,9 @@ MOST_CASES = by_depth(4, 8)
 def test_random_types_pass(wire, definition, bus_bytes, seed):
     message = definition.message
     layout = lay_out(message, wire)
-    work = work_of(build_plan(layout, bus_bytes=bus_bytes), layout.min_bytes)
+    work = work_of(build_plan(layout, bus_bytes=bus_bytes), layout.least_bytes)
     assume(work <= MOST_WORK and work * bus_bytes <= MOST_WIDE_WORK)
-    options = Options(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=MOST_CASES)
+    options = CaseOptions(bus_bytes=bus_bytes, wire=wire, seed=seed, most_cases=MOST_CASES)
     trial = Trial.of(Test(system="ts3", distro="", type=message.name))
     oracle = RosbagsOracle(definition.store(), message.dialect)
     accept_message(message, oracle, definition.rosbags_name, options, trial)

@@ -7,7 +7,7 @@ import pytest
 import firm_hdl.verify.ts3.acceptance as acceptance
 from firm_hdl.cli import main
 from firm_hdl.verify.results.file import read_results
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from tests.verify.judged import accept, assert_passed
 
 pytestmark = pytest.mark.usefixtures("same_circuit")
@@ -42,7 +42,9 @@ def test_wrong_answer_to_a_bare_string_is_found(monkeypatch):
         return [(cases[-1], packet) for _, packet in right(plan, cases)]
 
     monkeypatch.setattr(acceptance, "bare_packets", wrong)
-    result = accept("humble", "std_msgs/msg/String", Options(stalled=False, broken=False, seed=2))
+    result = accept(
+        "humble", "std_msgs/msg/String", CaseOptions(stalled=False, broken=False, seed=2)
+    )
     assert any(failure.startswith("hardware: packet ") for failure in result.failures)
 
 

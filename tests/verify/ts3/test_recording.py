@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from firm_hdl.errors import DefinitionError
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import TypeUnderTest, UnknownTypeError
 from firm_hdl.verify.ts3.replay import Selection, collect_recorded, replay, select, topics_of
-from firm_hdl.verify.ts3.task import test_of
+from firm_hdl.verify.ts3.task import as_test
 from tests.recordings.files import Channel, write_mcap
 from tests.tools import need
 from tests.verify.judged import assert_passed
@@ -168,8 +168,8 @@ def test_file_of_another_library_is_replayed(tmp_path: Path) -> None:
             values = {"header": header, "values": [0.5] * number, "name": "abc"[: number % 4]}
             writer.write_message("/values", schema, values, log_time=number)
         writer.finish()
-    options = Options(bags=(str(tmp_path / "own.mcap"),), stalled=False)
+    options = CaseOptions(bags=(str(tmp_path / "own.mcap"),), stalled=False)
     task = TypeUnderTest(distro="lyrical", name="own_msgs/msg/Values", same=("lyrical",))
-    result = replay(options, test_of(task, options))
+    result = replay(options, as_test(task, options))
     assert_passed(result)
     assert result.note.startswith("7 of 7 messages of 1 topic replayed")

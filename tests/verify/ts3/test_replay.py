@@ -13,10 +13,10 @@ from firm_hdl.cases.oracle import RosbagsOracle
 from firm_hdl.cli import main
 from firm_hdl.gateware import Deserializer, Serializer
 from firm_hdl.verify.results.verdict import NotJudged
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import TypeUnderTest
 from firm_hdl.verify.ts3.replay import replay
-from firm_hdl.verify.ts3.task import test_of
+from firm_hdl.verify.ts3.task import as_test
 from tests.frontend.recordings import make_old_db3
 from tests.frontend.workspace import make_files
 from tests.recordings.files import Channel, write_db3, write_mcap
@@ -43,9 +43,9 @@ def strings(tmp_path, *packets, name=STRING, topic="/text", form="mcap"):
 
 
 def replayed(bag, name=STRING, distro="lyrical", **options):
-    given = Options(bags=(str(bag),), **options)
+    given = CaseOptions(bags=(str(bag),), **options)
     task = TypeUnderTest(distro=distro, name=name, same=(distro,))
-    return replay(given, test_of(task, given))
+    return replay(given, as_test(task, given))
 
 
 def test_events_are_replayed_and_topics_that_cannot_be_are_named(capsys, tmp_path):

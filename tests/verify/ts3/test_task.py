@@ -6,9 +6,9 @@ import shlex
 
 import pytest
 
-from firm_hdl.verify.systems.options import Options
+from firm_hdl.verify.systems.options import CaseOptions
 from firm_hdl.verify.systems.tasks import TypeUnderTest
-from firm_hdl.verify.ts3.task import command_of, same_circuits, test_of
+from firm_hdl.verify.ts3.task import as_test, command_of, same_circuits
 from tests.frontend.workspace import make_files
 
 
@@ -17,7 +17,7 @@ def test_circuits_are_those_of_the_first_task_with_the_same_plan(tmp_path):
     texts |= {"p/msg/Other.msg": "int8 s\n", "p/msg/Wrong.msg": "Such s\n"}
     # These are longer than the usual limit of a message, which their circuits raise.
     texts |= {f"p/msg/{name}.msg": "uint8[20000000] x\n" for name in ("Long", "Longer")}
-    options = Options(paths=(str(make_files(tmp_path, texts)),))
+    options = CaseOptions(paths=(str(make_files(tmp_path, texts)),))
     names = ("Wrong", "A", "Other", "B", "C", "Long", "Longer")
     tasks = [TypeUnderTest(distro="lyrical", name=f"p/msg/{n}", same=("lyrical",)) for n in names]
     found = same_circuits(tasks, options)
@@ -28,7 +28,7 @@ def test_circuits_are_those_of_the_first_task_with_the_same_plan(tmp_path):
     ]
 
 
-OTHER = Options(
+OTHER = CaseOptions(
     bus_bytes=4,
     wire="ros1",
     seed=3,
@@ -39,13 +39,13 @@ OTHER = Options(
     references=("genpy", "fastcdr"),
     vcd="waves",
 )
-REPLAY = Options(bags=("x.bag", "y.bag"), longest=100, stalled=False, references=())
+REPLAY = CaseOptions(bags=("x.bag", "y.bag"), longest=100, stalled=False, references=())
 
 
 @pytest.mark.parametrize(
     ("options", "words", "key"),
     [
-        (Options(), "--distro humble --bus-bytes 8 --seed 0", "cdr/8 seed=0"),
+        (CaseOptions(), "--distro humble --bus-bytes 8 --seed 0", "cdr/8 seed=0"),
         (
             OTHER,
             "--distro humble --path a --path 'b c' --simulator ghdl --bus-bytes 4 --wire ros1 "
@@ -64,6 +64,6 @@ def test_command_and_key_have_every_option_that_is_not_usual(options, words, key
     text = command_of(options, "p/msg/A", distro="humble")
     assert shlex.split(text) == shlex.split(f"firm-hdl verify {words} p/msg/A")
     task = TypeUnderTest(distro="humble", name="p/msg/A", same=("humble", "jazzy"))
-    test = test_of(task, options)
+    test = as_test(task, options)
     assert test.key == f"ts3 {options.simulator} humble p/msg/A {key}"
     assert test.same == ("humble", "jazzy")

@@ -38,8 +38,6 @@ class Oracle(ABC):
     name: ClassVar[str]
     # The languages that it reads, for each dialect: `msg`, `srv`, `action`, `idl`.
     languages: ClassVar[Mapping[Dialect, frozenset[str]]]
-    # Whether it is asked about changed texts, which mostly have mistakes.
-    judges_changes: ClassVar[bool] = True
 
     def __init__(self, universe: Universe) -> None:
         self.universe = universe

@@ -58,7 +58,6 @@ class _Worked(Oracle):
             "kind": case.kind,
             "name": case.name,
             "file": case.file,
-            "text": case.text if case.is_changed else None,
             "has_events": DISTROS[self.universe.distro].has_events,
         }
 
@@ -150,7 +149,6 @@ class Ros2Proto(Oracle):
 
     name = "ros2"
     languages: ClassVar = {"ros2": frozenset({"msg", "srv", "action", "idl"})}
-    judges_changes = False
 
     def missing(self) -> str | None:
         return None if which("ros2") else "there is no command 'ros2'; source ROS 2's setup"

@@ -32,7 +32,6 @@ class Rosbags(Oracle):
 
     name = "rosbags"
     languages: ClassVar = {"ros1": frozenset({"msg"}), "ros2": frozenset({"msg"})}
-    judges_changes = False
 
     def missing(self) -> str | None:
         return None

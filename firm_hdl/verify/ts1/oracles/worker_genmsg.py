@@ -2,7 +2,6 @@
 
 import functools
 import os
-import tempfile
 
 __all__ = ["readers"]
 
@@ -25,7 +24,6 @@ class _Genmsg:
         self.genmsg = genmsg
         self.spec_to_str = spec_to_str
         self.folder = folder
-        self.temporary = tempfile.TemporaryDirectory(prefix="firm-hdl-ts1-")
 
     @functools.cached_property
     def paths(self):
@@ -34,10 +32,6 @@ class _Genmsg:
     def judge(self, request):
         full_name = f"{request['package']}/{request['name']}"
         file = os.path.join(self.folder, request["package"], request["kind"], request["file"])
-        if request["text"] is not None:
-            file = os.path.join(self.temporary.name, request["file"])
-            with open(file, "wb") as out:
-                out.write(request["text"].encode("utf-8", "surrogateescape"))
         return getattr(self, "_" + request["kind"])(full_name, file)
 
     def _msg(self, full_name, file):

@@ -97,9 +97,6 @@ class _Rosidl:
         return self.convert(*key)
 
     def text(self, request):
-        if request["text"] is not None:
-            # Files are read in text mode, which converts all line ends to one form.
-            return request["text"].replace("\r\n", "\n").replace("\r", "\n")
         path = os.path.join(self.folder, request["package"], request["kind"], request["file"])
         with open(path, encoding="utf-8") as lines:
             return lines.read()
@@ -129,26 +126,24 @@ class _Rosidl:
         """Refuse a definition if a type that it needs is missing or refused, as a build would."""
         own = f"{request['package']}/msg/{request['name']}"
         path = {own} if request["kind"] == "msg" else set()
-        # With a changed text, types that need this one have another state than with its file.
-        known = {} if path and request["text"] is not None else self.known
         for need in needs:
-            why = self._state(need, path, known)
+            why = self._state(need, path)
             if why is not None:
                 raise _RefusedError(why)
 
-    def _state(self, name, path, known):
+    def _state(self, name, path):
         if name in path:
             return f"{name} contains itself"
-        if name not in known:
+        if name not in self.known:
             path.add(name)
-            known[name] = self._find_state(name, path, known)
+            self.known[name] = self._find_state(name, path)
             path.discard(name)
-        return known[name]
+        return self.known[name]
 
-    def _find_state(self, name, path, known):
+    def _find_state(self, name, path):
         package, _, base = name.split("/")
         for end in (".msg", ".idl"):
-            request = {"package": package, "kind": "msg", "file": base + end, "text": None}
+            request = {"package": package, "kind": "msg", "file": base + end}
             try:
                 text = self.text(request)
             except OSError:
@@ -163,7 +158,7 @@ class _Rosidl:
             except Exception as error:
                 return f"{name}: {type(error).__name__}: {error}"
             for need in needs:
-                why = self._state(need, path, known)
+                why = self._state(need, path)
                 if why is not None:
                     return why
             return None
@@ -358,8 +353,7 @@ class _Hashes:
 
     def _of(self, element, request):
         own = self._individual(element, request)
-        if request["text"] is None:
-            self.needed.update(own)
+        self.needed.update(own)
         described = {**self.needed, **own}
         pending = list(own)
         seen = set(own)
@@ -404,7 +398,7 @@ class _Hashes:
         for end in (".msg", ".idl"):
             request = {"package": package, "kind": kind, "name": base, "file": base + end}
             try:
-                element = _element(self.reader.content({**request, "text": None}))
+                element = _element(self.reader.content(request))
             except OSError:
                 continue
             return self._individual(element, request)[name]

@@ -11,10 +11,8 @@ from __future__ import annotations
 
 import json
 import tempfile
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -36,51 +34,49 @@ from firm_hdl.verify.references.clients import WIDE_REFERENCES, may_stand_in
 from firm_hdl.verify.results.file import ResultsWriter
 from firm_hdl.verify.results.records import Record, Test
 from firm_hdl.verify.results.verdict import first_difference
-from firm_hdl.verify.systems.options import Options, Request
+from firm_hdl.verify.systems.options import CaseOptions, Request
 from firm_hdl.verify.systems.system import (
     Stopwatch,
     Trial,
     TypesSystem,
-    counted,
+    as_test,
     failure_of,
-    kept,
-    print_passes,
-    recorded,
+    run_and_record,
     run_tests,
 )
 from firm_hdl.verify.systems.tasks import TypeUnderTest, library_of
 from firm_hdl.verify.ts3.confirm import confirm
 
-__all__ = ["Benches", "run_bench"]
+__all__ = ["Benches", "judge_bench"]
 
 WARNINGS = ("--warn-error", "--warn-unused", "--warn-body", "--warn-default-binding")
 
 
-def run_bench(given: tuple[Options, str], test: Test) -> Record:
+def judge_bench(given: tuple[CaseOptions, str], test: Test) -> Record:
     """Build a type and run its bench. Errors are not raised, but are in the record.
 
     * `given`: how to build the type (its paths and wire), and the command of GHDL.
     """
     options, ghdl = given
-
-    def run(trial: Trial) -> None:
-        # The cases of the verdict are the packets that came out as the oracle wrote them.
+    with (
+        Trial.of(test) as trial,
+        tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder,
+    ):
         try:
-            with tempfile.TemporaryDirectory(prefix="firm-hdl-") as folder:
-                packets, transfers = _packets_and_transfers(
-                    test, options, ghdl, Path(folder), trial.watch
-                )
+            packets, transfers = _packets_and_transfers(
+                test, options, ghdl, Path(folder), trial.watch
+            )
         except (AssertionError, ToolError) as error:
             trial.failures.append(str(error))
-            return
-        trial.judged = trial.record.packets = packets
-        trial.record.metrics = {"transfers": float(transfers)}
-
-    return recorded(test, run)
+        else:
+            # The cases of the verdict are the packets that came out as the oracle wrote them.
+            trial.judged = trial.record.packets = packets
+            trial.record.metrics = {"transfers": float(transfers)}
+    return trial.end()
 
 
 def _packets_and_transfers(
-    test: Test, options: Options, ghdl: str, folder: Path, watch: Stopwatch
+    test: Test, options: CaseOptions, ghdl: str, folder: Path, watch: Stopwatch
 ) -> tuple[int, int]:
     """Return the numbers of correct packets and of correct transfers of leaves."""
     library = library_of(test.distro, options)
@@ -196,6 +192,7 @@ class Benches(TypesSystem):
     """
 
     name = "bench"
+    passes = "benches pass"
 
     def __init__(self, tasks: Sequence[TypeUnderTest], request: Request):
         # Equal types of several distributions each have a bench, because the headers of the
@@ -204,41 +201,21 @@ class Benches(TypesSystem):
         super().__init__(each, request)
         self._ghdl = find_ghdl()
 
-    @cached_property
-    def tests(self) -> Sequence[Test]:
-        """The tests of all types on all buses."""
-        return [each for width in self._request.widths for each in self._tests(width)]
-
-    def _tests(self, bus_bytes: int) -> list[Test]:
-        return [self._test(task, bus_bytes, "ghdl") for task in self._tasks]
+    def _tests(self, options: CaseOptions) -> list[Test]:
+        return [as_test(self.name, task, options, simulator="ghdl") for task in self._tasks]
 
     @property
     def options(self) -> Mapping[str, Any]:
         """What GHDL says of its version: results of another one are another run's."""
         return {"ghdl": version_of(self._ghdl)}
 
-    def run(self, writer: ResultsWriter | None) -> list[Record]:
-        """Run all benches, and print a table for each bus."""
-        return [each for width in self._request.widths for each in self._run(width, writer)]
-
-    def _run(self, bus_bytes: int, writer: ResultsWriter | None) -> list[Record]:
-        """Run the benches with one bus."""
-        began = time.perf_counter()
+    def records(self, writer: ResultsWriter | None) -> list[Record]:
+        """Run all benches."""
         given, jobs = (self._request, self._ghdl), self._request.jobs
-        records = kept(
-            self._tests(bus_bytes),
+        return run_and_record(
+            self.tests,
             writer,
-            lambda left: run_tests(run_bench, given, left, self._command, jobs=jobs),
-            _lines_of,
-            label=f"{bus_bytes}-byte bus",
+            lambda left: run_tests(judge_bench, given, left, self._command, jobs=jobs),
+            lambda record: failure_of(f"{record.test.type} ({record.test.distro})", record),
+            label="benches",
         )
-        print_passes(records, "benches pass")
-        packets = sum(each.packets for each in records)
-        transfers = round(sum(each.metrics.get("transfers", 0) for each in records))
-        seconds = time.perf_counter() - began
-        print(f"{packets} packets, {transfers} transfers of leaves, {seconds:.0f} s")
-        return counted(records)
-
-
-def _lines_of(record: Record) -> Iterator[str]:
-    return failure_of(f"{record.test.type} ({record.test.distro})", record)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-import firm_hdl.verify.bench as benches
+import firm_hdl.verify.generated_benches as benches
 from firm_hdl.cases.make import Case
 from firm_hdl.export.vhdl.bench import RUN_SCRIPT
 from firm_hdl.frontend import Library
 from firm_hdl.plan import build_plan
-from firm_hdl.verify.bench import _check_transfers, _compare
+from firm_hdl.verify.generated_benches import _check_transfers, _compare
 from firm_hdl.verify.references.clients import client
 from firm_hdl.verify.results.records import Test
 from firm_hdl.verify.systems.options import Request
@@ -25,9 +25,9 @@ HEADER = "std_msgs/msg/Header"
 STRING = "std_msgs/msg/String"
 
 
-def run_bench(ghdl, name, distro="lyrical", bus_bytes=8, **options):
+def judge_bench(ghdl, name, distro="lyrical", bus_bytes=8, **options):
     test = Test(system="bench", distro=distro, type=name, bus_bytes=bus_bytes)
-    return benches.run_bench((Request(**options), ghdl), test)
+    return benches.judge_bench((Request(**options), ghdl), test)
 
 
 def thorough(*values):
@@ -51,7 +51,7 @@ SAMPLE = [
 
 @pytest.mark.parametrize(("distro", "name", "bus_bytes"), SAMPLE)
 def test_bench_passes_with_the_bytes_and_transfers_of_rosbags(ghdl, distro, name, bus_bytes):
-    result = run_bench(ghdl, name, distro, bus_bytes)
+    result = judge_bench(ghdl, name, distro, bus_bytes)
     assert assert_passed(result) == result.packets >= 3
     assert result.metrics["transfers"] >= result.packets
 
@@ -60,7 +60,7 @@ def wide(folder, ghdl):
     """Run the bench of a type with wide text."""
     own_package(folder)
     (folder / "own_msgs" / "msg" / "Wide.msg").write_text("wstring[] text\nuint8 x\n")
-    return run_bench(ghdl, "own_msgs/msg/Wide", paths=(str(folder),))
+    return judge_bench(ghdl, "own_msgs/msg/Wide", paths=(str(folder),))
 
 
 @pytest.mark.thorough
@@ -110,7 +110,7 @@ def change(monkeypatch, file: str, before: str, after: str) -> None:
 @pytest.mark.sampled(6)
 def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
     change(monkeypatch, file, before, after)
-    result = run_bench(ghdl, HEADER)
+    result = judge_bench(ghdl, HEADER)
     (failure,) = result.verdict.failures
     assert output in failure
     assert not result.packets
@@ -118,14 +118,14 @@ def test_faults_are_found(ghdl, monkeypatch, file, before, after, output):
 
 @pytest.mark.thorough
 def test_bench_of_the_record_view_is_run_as_well(ghdl, monkeypatch):
-    both = run_bench(ghdl, "geometry_msgs/msg/Vector3")
+    both = judge_bench(ghdl, "geometry_msgs/msg/Vector3")
     assert assert_passed(both) == both.packets
     if THOROUGH:
-        assert assert_passed(run_bench(ghdl, HEADER))
+        assert assert_passed(judge_bench(ghdl, HEADER))
     # Three leaves, in the first bench; each packet is sent in both.
     assert 2 * both.metrics["transfers"] == 3 * both.packets
     change(monkeypatch, "8_serializer_record.vhd", "<= to_slv(msg", "<= not to_slv(msg")
-    (failure,) = run_bench(ghdl, "geometry_msgs/msg/Vector3").verdict.failures
+    (failure,) = judge_bench(ghdl, "geometry_msgs/msg/Vector3").verdict.failures
     assert "FAIL packet 0" in failure
 
 
