@@ -155,7 +155,7 @@ _UDP, _FRAGMENTS = UdpReceiver.elaborate, Reassembler.elaborate
 def studies() -> list[Study]:
     """Return the studies of the receivers of Ethernet."""
     receiver = {
-        "place": Bug(_UDP, "MOST_PAYLOAD - 64", "MOST_PAYLOAD - 80"),
+        "place": Bug(_UDP, "MOST_PAYLOAD - 64", "MOST_PAYLOAD - 48"),
         "whole": Bug(_UDP, "& (header.length >= HEADER_BYTES)", ""),
         "one outcome": Bug(_UDP, "check.port & ~right", "~right"),
     }
@@ -165,7 +165,7 @@ def studies() -> list[Study]:
             "udp-receiver",
             f"`UdpReceiver({RING_BYTES})`, payloads of at most {MOST_BYTES} bytes",
             _udp,
-            tuple(Claim(name, bug, found_within=110) for name, bug in receiver.items()),
+            tuple(Claim(name, bug, found_within=95) for name, bug in receiver.items()),
         ),
         Study(
             "reassembler",

@@ -167,7 +167,7 @@ def _reader(scene: Scene) -> None:
     # What an event is about is the submessage that the lengths lead to.
     of_data = ("PARTICIPANT", "PARTICIPANT_GONE", "ENDPOINT", "ENDPOINT_GONE")
     kinds = {
-        **{EventKind[name]: (Data.KIND,) for name in of_data},
+        **{getattr(EventKind, name): (Data.KIND,) for name in of_data},
         EventKind.SAMPLE: (Data.KIND, DataFrag.KIND),
         EventKind.FRAGMENT: (DataFrag.KIND,),
         EventKind.HEARTBEAT: (Heartbeat.KIND,),
@@ -240,7 +240,7 @@ def studies() -> list[Study]:
     }
     parameters = {
         "inside": Bug(_LIST, "size > self.left", "size > self.left + 1"),
-        "input moves": Bug(_LIST, "(place == 0) & (self.left < 4)", "self.left == 0"),
+        "input moves": Bug(_LIST, 'm.next = "VALUE"', 'm.next = "CHECK"'),
     }
     return [
         Study("rtps-list", "`ParameterReader`", _list, _claims(parameters)),
