@@ -234,7 +234,9 @@ def studies() -> list[Study]:
     reader = {
         "valid stays": Bug(_READER, "m.If(self.events.ready)", "m.If(1)"),
         "payload stays": Bug(
-            _READER, "is_known.eq(self.knows)", "[is_known.eq(self.knows), event.last.eq(0)]"
+            _READER,
+            "m.d.comb += self.events.valid.eq(1)",
+            "m.d.comb += self.events.valid.eq(1); m.d.sync += event.last.eq(event.number)",
         ),
         "inside": Bug(_READER, "skip > left", "skip > rest"),
     }
