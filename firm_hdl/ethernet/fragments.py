@@ -7,7 +7,7 @@ from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.ipv4 import Ipv4Signature, check_state_layout
-from firm_hdl.ethernet.udp import StoreSignature
+from firm_hdl.ethernet.udp import HEADER_BYTES, StoreSignature
 from firm_hdl.gateware.memories import BlockMemory
 
 __all__ = ["Reassembler"]
@@ -26,7 +26,7 @@ class Reassembler(wiring.Component):
     Two datagrams of two sources can be under way, or wait to be read. They share the memory: one
     grows from its start, the other one from its end. A source has one datagram under way: a new
     first fragment ends what came before. A fragment that is not the next one ends its datagram, as
-    does a silence of 3 ticks.
+    does a silence of 3 ticks. A datagram without a payload is dropped.
 
     A fragment is written as it comes, and counts when its frame has ended well. So a first one goes
     where nothing is, and the state after a fragment has a checksum that goes on with the next one.
@@ -126,9 +126,11 @@ class Reassembler(wiring.Component):
                         gives_up.eq(hits & ~follows),
                     ]
             with m.Case(18):
-                other = Mux(slot, parts[0].next, parts[1].next) + 1
+                units, other = self.memory_bytes // 8, Mux(slot, parts[0].next, parts[1].next)
                 other_busy = Mux(slot, busy[0], busy[1])
-                m.d.sync += limit.eq(self.memory_bytes // 8 - Mux(other_busy, other, 0))
+                # One that fills the memory has as many as there are, and none follows.
+                rest = Mux(other < units, units - 1 - other, 0)
+                m.d.sync += limit.eq(Mux(other_busy, rest, units))
                 m.d.sync += [at.eq((header.offset << 3) + _SOURCE_BYTES), fits.eq(1)]
                 m.d.comb += self.load.eq(~first)
             with m.Case(20):
@@ -166,7 +168,7 @@ class Reassembler(wiring.Component):
         gone = Signal(2)
         m.d.sync += [
             more.eq((at[:3] == _SOURCE_BYTES) & (at[3:] != header.offset) & check.port),
-            last.eq(check.length == at - _SOURCE_BYTES),
+            last.eq((check.length == at - _SOURCE_BYTES) & (check.length != HEADER_BYTES)),
             ends.eq(came.valid & came.payload.end & came.payload.good & fragment),
             self.dropped.eq(gone.any()),
         ]

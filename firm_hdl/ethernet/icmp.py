@@ -13,6 +13,7 @@ from firm_hdl.ethernet.streams import add_word
 __all__ = ["EchoReceiver"]
 
 _REQUEST = 8
+_HEADER_BYTES = 8
 
 
 class EchoReceiver(wiring.Component):
@@ -129,7 +130,8 @@ class EchoReceiver(wiring.Component):
             ]
         with m.If(ends):
             whole = first & ~header.more
-            answers = ~header.options & header.to_node & Mux(first, request, continues)
+            begins = request & (header.length >= _HEADER_BYTES)
+            answers = ~header.options & header.to_node & Mux(first, begins, continues)
             checked = answers & (self.right | ~whole)
             m.d.comb += reply.commit.eq(checked & room)
             m.d.sync += [

@@ -16,6 +16,7 @@ from firm_hdl.ethernet.streams import add_word
 from firm_hdl.gateware.memories import BlockMemory
 
 __all__ = [
+    "HEADER_BYTES",
     "MOST_PAYLOAD",
     "WORD_BYTES",
     "DatagramReader",
@@ -129,8 +130,9 @@ class UdpReceiver(wiring.Component):
         ]
         m.d.sync += [
             level.eq(tail - head),
-            # All bytes have come a cycle before `ends`.
-            fits.eq(check.length == header.length),
+            # All bytes have come a cycle before `ends`. Without a whole header, `check` has fields
+            # of what came before.
+            fits.eq((check.length == header.length) & (header.length >= HEADER_BYTES)),
             empty.eq(check.length == HEADER_BYTES),
             ends.eq(came.valid & came.payload.end & came.payload.good & ours),
             self.no_port.eq(0),

@@ -96,7 +96,8 @@ class _Traffic:
         rnd = self.random
         host = rnd.choice(self.hosts)
         own = b"\x02\x11" + host
-        kind = rnd.choices(("udp", "echo", "arp", "igmp", "part", "other"), (60, 8, 6, 3, 8, 5))[0]
+        kinds = {"udp": 60, "echo": 8, "arp": 6, "igmp": 3, "part": 8, "short": 4, "other": 5}
+        kind = rnd.choices([*kinds], [*kinds.values()])[0]
         size = rnd.choice((rnd.randrange(1, 60), rnd.randrange(1, 300), rnd.randrange(1, 1473)))
         if kind == "other":
             return MAC + own + rnd.randbytes(2) + rnd.randbytes(size)
@@ -124,6 +125,13 @@ class _Traffic:
             mac = group_mac(to)
             body = with_checksum(b"\x11" + rnd.randbytes(1) + b"\0\0" + group, 2)
             packet = ipv4(2, body, host, to, options=b"\x94\x04\0\0")
+        elif kind == "short":
+            # A header that is cut off, or has nothing behind it.
+            protocol, more = rnd.choice((1, 17, 17)), rnd.random() < 0.3
+            body = b"\x08\0" + rnd.choice(PORTS).to_bytes(2, "big") + bytes([0, rnd.randrange(10)])
+            body = (body + bytes(2))[: 8 if more else rnd.randrange(9)]
+            where = 0x2000 if more else rnd.choice((0, 0, 1))
+            packet = ipv4(protocol, body, host, ident=rnd.randrange(2), fragment=where)
         else:
             # A fragment of nothing.
             body = rnd.randbytes(8 * rnd.randrange(1, 30))
@@ -325,9 +333,7 @@ class Judge:
         if offset:
             if self._echo != (*key, offset):
                 return "other"
-        elif len(body) < 2:
-            return "short"
-        elif body[:2] != b"\x08\0":
+        elif body[:2] != b"\x08\0" or len(body) < 8:
             return "other"
         elif not more and checksum(body):
             return "checksum"

@@ -21,11 +21,11 @@ class Claim:
         As in the scene.
     bug : Bug
         What it has to find.
-    method : "PDR" or "BMC"
+    method : "PDR", "BMC" or "induction"
     depth : int
         Cycles of `BMC`.
     found_within : int
-        Cycles in which the bug has to be found, if the method is "PDR"; else it is `depth`.
+        Cycles in which the bug has to be found, if the method is not "BMC"; else it is `depth`.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Claim:
     @property
     def reach(self) -> str:
         """For how many cycles the claim is proved."""
-        return "unbounded" if self.method == "PDR" else str(self.depth)
+        return str(self.depth) if self.method == "BMC" else "unbounded"
 
 
 @dataclass(frozen=True, slots=True)

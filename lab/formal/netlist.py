@@ -14,7 +14,7 @@ from amaranth.back import rtlil
 from amaranth.hdl import ClockDomain, Fragment
 
 from firm_hdl.equivalence.tools import Tools
-from lab.formal.scene import Scene
+from lab.formal.scene import STARTS, Scene
 
 __all__ = ["write_aiger"]
 
@@ -33,8 +33,8 @@ def write_aiger(scene: Scene, folder: Path, tools: Tools, *, name: str = "scene"
     """Write a scene in binary AIGER; its outputs are the claims, in their order."""
     fragment = Fragment.get(scene, None)
     fragment.add_domains(ClockDomain("sync", reset_less=True))
-    if not scene.is_configured:
-        _mark_undefined(fragment)
+    if scene.is_step or not scene.is_configured:
+        _mark_undefined(fragment, is_step=scene.is_step)
     text = rtlil.convert(fragment, name="scene", ports=scene.ports, emit_src=False)
     (folder / f"{name}.il").write_text(text, encoding="utf-8")
     script = _SCRIPT.format(name=name, undefined=_UNDEFINED, clocks="")
@@ -42,14 +42,14 @@ def write_aiger(scene: Scene, folder: Path, tools: Tools, *, name: str = "scene"
     return folder / f"{name}.aig"
 
 
-def _mark_undefined(fragment: Fragment) -> None:
-    """Mark the registers that a reset does not change."""
+def _mark_undefined(fragment: Fragment, *, is_step: bool) -> None:
+    """Mark the registers that a reset does not change; in the step of an induction, all."""
     for domain, statements in fragment.statements.items():
         if domain == "comb":
             continue
         for statement in statements:
             for signal in statement._lhs_signals():
-                if signal.reset_less:
+                if signal.reset_less or (is_step and not signal.name.startswith(STARTS)):
                     signal.attrs[_UNDEFINED] = 1
     for inner, _name, _location in fragment.subfragments:
-        _mark_undefined(inner)
+        _mark_undefined(inner, is_step=is_step)

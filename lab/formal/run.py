@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -32,6 +33,8 @@ def prove(key: str, timeout: float = TIMEOUT) -> Answer:
     """Prove a claim."""
     proof = all_proofs()[key]
     claim = proof.claim
+    if claim.method == "induction":
+        return _induction(proof, timeout)
     return _decide(proof, timeout, method=claim.method, depth=claim.depth)
 
 
@@ -44,8 +47,20 @@ def refute(key: str, timeout: float = TIMEOUT) -> Answer:
         return _decide(proof, timeout, method="BMC", depth=depth)
 
 
-def _decide(proof: Proof, timeout: float, **how: object) -> Answer:
-    scene = Scene(proof.study.build)
+def _induction(proof: Proof, timeout: float) -> Answer:
+    """Prove that a claim holds in the first cycle, and in each one after one in which it holds."""
+    start = _decide(proof, timeout, method="BMC", depth=1)
+    if start.result != "proved":
+        return start
+    step = _decide(proof, timeout, is_step=True, method="BMC", depth=2)
+    # A state that breaks it may be one that no run has.
+    if step.result == "broken":
+        step = replace(step, result="undecided")
+    return replace(step, seconds=start.seconds + step.seconds)
+
+
+def _decide(proof: Proof, timeout: float, *, is_step: bool = False, **how: object) -> Answer:
+    scene = Scene(proof.study.build, is_step=is_step)
     named = {claim.name for claim in proof.study.claims}
     if named != set(scene.claims):
         raise ValueError(f"{proof.study.name}: claims differ: {named ^ set(scene.claims)}")

@@ -8,12 +8,18 @@ which any simulator can play.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
-from typing import TypeAlias
+from functools import partial
+from types import FrameType, SimpleNamespace
+from typing import Any, TypeAlias
 
-from amaranth.hdl import Elaboratable, Module, Mux, ShapeLike, Signal, Value
+from amaranth.hdl import Cat, Elaboratable, Fragment, Module, Mux, ShapeLike, Signal, Value
 
 __all__ = ["Build", "Scene"]
+
+STARTS = "starts_"
+"""Begin of the names of registers of the scene itself, which begin with their values."""
 
 Build: TypeAlias = "Callable[[Scene], None]"
 """Adds a block, its surroundings and its claims to a scene."""
@@ -26,6 +32,8 @@ class Scene(Elaboratable):
     ----------
     build : callable
         Called with the scene when it is elaborated.
+    is_step : bool
+        The step of an induction: runs begin in any state in which a claim holds.
 
     Attributes
     ----------
@@ -41,11 +49,11 @@ class Scene(Elaboratable):
         FPGA. Else they begin with any value, as after a reset. `build` may set it.
     """
 
-    def __init__(self, build: Build):
-        self.m = Module()
+    def __init__(self, build: Build, *, is_step: bool = False):
+        self.m, self.is_step = Module(), is_step
         self.inputs: list[Signal] = []
         self.claims: dict[str, Signal] = {}
-        self.first = Signal(init=1, name="first")
+        self.first = Signal(init=1, name=f"{STARTS}first")
         self.is_configured = False
         self._assumed: list[Value] = []
         self._wrong: dict[str, Value] = {}
@@ -74,6 +82,29 @@ class Scene(Elaboratable):
         self.m.d.sync += kept.eq(value)
         return value
 
+    def inside(self, block: Elaboratable) -> dict[str, Any]:
+        """Add a block. Return the local names of `elaborate`, of it and its parts, by class.
+
+        The name ``state`` stands for a function: whether the state machine is in
+        one of states; without any, whether it is in any.
+        """
+        found: dict[str, Any] = {}
+
+        def watch(frame: FrameType, event: str, _: object) -> None:
+            if event == "return" and frame.f_code.co_name == "elaborate":
+                names = SimpleNamespace(**frame.f_locals)
+                found[type(names.self).__name__] = names
+
+        sys.setprofile(watch)
+        try:
+            self.m.submodules.block = Fragment.get(block, None)
+        finally:
+            sys.setprofile(None)
+        for names in found.values():
+            if fsm := getattr(getattr(names, "m", None), "_generated", {}).get("fsm"):
+                names.state = partial(_is_in, fsm)
+        return found
+
     def was(self, value: Value, name: str) -> Signal:
         """Return the value of the cycle before; 0 in the first one."""
         before = Signal(len(Value.cast(value)), name=f"{name}_before")
@@ -93,12 +124,20 @@ class Scene(Elaboratable):
         self.m.d.sync += self.first.eq(0)
         allowed: Value | None = None
         if self._assumed:
-            kept = Signal(init=1, name="allowed_before")
+            kept = Signal(init=1, name=f"{STARTS}allowed_before")
             allowed = kept
             for condition in self._assumed:
                 allowed = allowed & condition
             self.m.d.sync += kept.eq(allowed)
-        for name, wrong in self._wrong.items():
+        for number, (name, wrong) in enumerate(self._wrong.items()):
             signal = Signal(name=f"claim_{name.replace(' ', '_')}")
+            if self.is_step:
+                held = Signal(name=f"{STARTS}{number}")
+                self.m.d.sync += held.eq(self.first & ~wrong)
+                wrong = wrong & held
             self.m.d.comb += signal.eq(wrong if allowed is None else wrong & allowed)
             self.claims[name] = signal
+
+
+def _is_in(fsm: Any, *states: str) -> Value:
+    return Cat(fsm.state == fsm.encoding[state] for state in states or fsm.encoding).any()

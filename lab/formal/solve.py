@@ -19,7 +19,7 @@ from firm_hdl.jobs import TooSlowError
 
 __all__ = ["Answer", "Method", "decide"]
 
-Method: TypeAlias = Literal["PDR", "BMC"]
+Method: TypeAlias = Literal["PDR", "BMC", "induction"]
 Result: TypeAlias = Literal["proved", "broken", "undecided"]
 
 _START = "read_verilog start.v; prep -top start; simplemap; abc -g AND -script +{commands}"

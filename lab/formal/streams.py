@@ -123,8 +123,12 @@ def packet_rules(scene: Scene, port: stream.Interface, name: str) -> None:
     scene.claim("count", ~port.valid | good)
 
 
-def progress(scene: Scene, name: str, waits: Value, cycles: int) -> None:
-    """Claim that a condition is never true for more than a number of cycles in a row."""
+def progress(scene: Scene, name: str, waits: Value, cycles: int) -> Signal:
+    """Claim that a condition is never true for more than a number of cycles in a row.
+
+    Return for how many it has been.
+    """
     waited = Signal(range(cycles + 2), name=f"{name.replace(' ', '_')}_waited")
     scene.m.d.sync += waited.eq(Mux(waits, waited + (waited <= cycles), 0))
     scene.claim(name, waited <= cycles)
+    return waited

@@ -285,6 +285,30 @@ def test_an_echo_in_fragments_is_answered_in_fragments():
     assert seen.drops == {"other": 2}
 
 
+def test_what_is_shorter_than_its_header_leaves_no_trace_but_a_count():
+    ports = (5000).to_bytes(2, "big") + (7411).to_bytes(2, "big")
+
+    def cut(body, proto=17, **options):
+        return wire(ip(proto=proto, id=3, **options) / Raw(body))
+
+    steps = [
+        wire(arp(op=2, to=MAC)),
+        # It has no checksum, and names the length of the next one, which has none.
+        *(cut(ports + b"\0\4\0\0"), cut(ports)),
+        cut(ports + b"\0\6"),
+        # Fragments of a datagram without a payload.
+        *(cut(ports + b"\0\x08\0\0", flags="MF"), cut(b"", frag=1)),
+        # An echo would have more bytes than came.
+        cut(b"\x08\0", proto=1, flags="MF"),
+        *(wire(udp(size)) for size in (1, 2, 3)),
+        *fragments(60, 1),
+    ]
+    seen = run(steps, settings(fragment_bytes=4096))
+    assert seen.datagrams == come(1, 2, 3, 60)
+    assert seen.frames == []
+    assert seen.drops == {"checksum": 3, "fragment": 1, "other": 1}
+
+
 def test_groups_are_joined_and_queries_answered():
     igmp = pytest.importorskip("scapy.contrib.igmp").IGMP
 

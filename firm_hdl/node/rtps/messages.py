@@ -326,8 +326,8 @@ class MessageReader(wiring.Component):
                                     m.d.sync += event.last.eq(value)
                             with m.If((kind == Heartbeat.KIND) & (index == 6)):
                                 m.next = "HEARTBEAT"
-                            place = Mux(kind == NackFrag.KIND, 5, 6)
-                            is_count = index == Mux(kind == AckNack.KIND, 4, place)
+                            size_at = Mux(kind == NackFrag.KIND, 5, 6)
+                            is_count = index == Mux(kind == AckNack.KIND, 4, size_at)
                             with m.If((kind != Heartbeat.KIND) & is_count):
                                 m.d.sync += words.eq((value + 31)[5:])
                                 restart("SET")

@@ -8,9 +8,11 @@ from lab.formal.blocks import (
     converters,
     crossings,
     drop_gate,
+    ethernet,
     fifos,
     judges,
     records,
+    rtps,
     serializers,
     slices,
     tail_drop,
@@ -34,5 +36,7 @@ def all_studies() -> list[Study]:
         judges,
         drop_gate,
         axi_lite,
+        ethernet,
+        rtps,
     )
     return [study for module in modules for study in module.studies()]
