@@ -1,3 +1,4 @@
+# amaranth: UnusedElaboratable=no
 """The command ``node``: designs with several topics behind one link."""
 
 from __future__ import annotations
