@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 import itertools
 import json
 import math
@@ -11,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
 import types
 from collections import Counter
 from dataclasses import replace
@@ -244,6 +246,9 @@ def test_make_makes_what_xmutil_loads(tmp_path, monkeypatch, name):
         assert read.splitlines() == [*wanted.values()]
 
 
+S2MM_DMASR, HALTED = 0x34, 1
+
+
 class Memory(np.ndarray):
     """A buffer of PYNQ, of which the DMA sees what was flushed."""
 
@@ -301,6 +306,7 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
     seen, lock = np.zeros(size, "u1"), threading.RLock()
     fabric = Fabric(node)
     fabric.dma = dma = AxiDma(memoryview(seen), address, fabric, length_bits=16)
+    is_loading, stuck = threading.Event(), []
 
     class Mmio:
         def __init__(self, where, length):
@@ -308,6 +314,8 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
 
         def read(self, offset):
             with lock:
+                if is_loading.is_set():
+                    stuck.append(offset)
                 dma.step()
                 return dma.read(offset)
 
@@ -326,6 +334,12 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
                     "parameters": parameters,
                 }
             }
+            self.download()
+
+        def download(self):
+            is_loading.set()
+            time.sleep(0.02)
+            is_loading.clear()
 
     def allocate(shape, dtype):
         array = np.zeros(shape, dtype).view(Memory)
@@ -336,6 +350,7 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
     module.__spec__ = ModuleSpec("pynq", None)
     module.MMIO, module.Overlay, module.allocate = Mmio, Overlay, allocate
     module.Clocks = Clocks("Clocks", (), {})
+    module.dma, module.stuck = dma, stuck
     return module
 
 
@@ -349,6 +364,8 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "pynq", module)
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq", raising=False)
     monkeypatch.chdir(out)
+    at_exit = []
+    monkeypatch.setattr(atexit, "register", lambda each: at_exit.append(each) or each)
     values = {}
     shown = []
     for cell in cells:
@@ -365,6 +382,19 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", printed)
     # The clock is that of the description, or none.
     assert module.Clocks.fclk0_mhz == 100
+    # Nothing reads while the FPGA is loaded, and the DMA stops: in the first cell once more, in a
+    # download beside an open node, and at the end of the program.
+    for _ in range(2):
+        exec(cells[0], values)
+    assert not module.dma.read(S2MM_DMASR) & HALTED
+    values["NodeOverlay"]("echo.bit")
+    assert not module.stuck and module.dma.read(S2MM_DMASR) & HALTED
+    exec(cells[0], values)
+    assert not module.dma.read(S2MM_DMASR) & HALTED
+    for each in at_exit:
+        each()
+    assert module.dma.read(S2MM_DMASR) & HALTED
+    values["node"].close()
     other = replace(values["description"], clock_hz=75e6)
     with pytest.raises(UserError, match=r"nearest clock to 75 MHz is 76\.9231 MHz"):
         values["NodeOverlay"]("echo.bit").board(other)
