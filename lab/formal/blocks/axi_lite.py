@@ -148,11 +148,7 @@ def studies() -> list[Study]:
         Claim("valid stays", Bug(_SLAVE, "with m.If(axi.bready):", "with m.If(1):")),
         Claim(
             "payload stays",
-            Bug(
-                _SLAVE,
-                "has_address & has_data & (~axi.bvalid | axi.bready)",
-                "has_address & has_data",
-            ),
+            Bug(_SLAVE, "has_read & (~axi.rvalid | axi.rready)", "has_read"),
         ),
         Claim("one response", Bug(_SLAVE, "has_address & has_data & (", "has_address & (")),
         Claim("responses come", Bug(_SLAVE, "axi.bvalid.eq(1)", "axi.bvalid.eq(0)")),
