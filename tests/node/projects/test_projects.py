@@ -105,7 +105,10 @@ RECORDER = """\
 proc unknown {args} {puts [join $args \\x1f]; return [lindex $args end]}
 proc get_board_parts {args} {return xilinx.com:k26c:part0:1.4}
 proc get_ipdefs {args} {return {CATALOG}}
-proc get_property {name object} {return [expr {$name eq "PROGRESS" ? "100%" : "0.5"}]}
+proc get_property {name object} {
+  set values {CONFIG.ACTUAL 75.0007 STATS.WNS 0.5 STATS.WHS 0.01 STATS.TPWS 0 PROGRESS 100% VALUES}
+  return [dict get $values [regsub {[.].*ACT_.*} $name .ACTUAL]]
+}
 source design.tcl
 """
 
@@ -114,7 +117,7 @@ source design.tcl
     ("board", "bus", "gate", "more"),
     [
         ("kria", 8, "ip:util_vector_logic", "registers: axi4lite"),
-        ("kria", 8, "inline_hdl:ilvector_logic", ""),
+        ("kria", 8, "inline_hdl:ilvector_logic:1.0", ""),
         ("pynq", 1, "", ""),
     ],
 )
@@ -125,9 +128,23 @@ def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus, gate, mor
         (out / "build/vivado" / place).mkdir(parents=True)
         (out / "build/vivado" / place / made).write_text(made)
     catalog = "gate" if "inline" in gate else ""
-    (out / "run.tcl").write_text(RECORDER.replace("CATALOG", catalog))
     command = [need("tclsh", shutil.which("tclsh")), "run.tcl"]
-    done = subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
+
+    def run(values=""):
+        text = RECORDER.replace("CATALOG", catalog).replace("VALUES", values)
+        (out / "run.tcl").write_text(text)
+        return subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
+
+    for values, said in (
+        ("CONFIG.ACTUAL 76.92", "plans 76.92 MHz in place of 75"),
+        ("STATS.WHS -0.01", "WHS is -0.01 ns"),
+        ("STATS.TPWS -1", "TPWS is -1 ns"),
+        ("STATS.WNS {}", "does not tell WNS"),
+    ):
+        done = run(values)
+        assert done.returncode == 1 and said in done.stderr, done.stderr
+        assert not (out / "build/little.bit").exists()
+    done = run()
     assert done.returncode == 0, done.stderr
     assert (out / "build/little.bit").is_file() and (out / "build/little.hwh").is_file() == (
         board == "pynq"
@@ -474,6 +491,16 @@ def test_the_page_of_litex_quotes_the_project(tmp_path):
     assert {kind for kind, _ in quotes} == files.keys()
     for kind, text in quotes:
         assert text in (tmp_path / "out" / files[kind]).read_text()
+
+
+@pytest.mark.parametrize(
+    ("board", "mhz", "warns"),
+    [("kria", 75, True), ("kria", 62.5, False), ("pynq", 75, True), ("pynq", 66.7, False)],
+)
+def test_a_clock_that_no_divisor_makes_is_warned_of(tmp_path, capsys, board, mhz, warns):
+    text = LOOP.replace("BUS", "8").replace("clock_mhz: 75", f"clock_mhz: {mhz}")
+    init(board, text, tmp_path)
+    assert ("runs the node at 76.92 MHz in place of 75" in capsys.readouterr().err) is warns
 
 
 def test_what_is_no_project_is_refused_and_changes_nothing(tmp_path, monkeypatch, capsys):
