@@ -95,7 +95,7 @@ def board_named(name: str) -> str:
 
 
 _DIVISORS = sorted({one * other for one in range(1, 64) for other in range(1, 64)})
-"""Of a PLL: both have 6 bits (UG1085 and UG585, "Clocks")."""
+"""Of a PLL: two numbers of 6 bits (UG585, UG1085)."""
 
 
 def clock_problem(board: str, description: Description) -> str | None:
