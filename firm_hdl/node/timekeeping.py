@@ -107,7 +107,7 @@ class ClockKeeper:
         if before is None or received_ns <= before[0]:
             return
         error = (offset - before[1]) / (received_ns - before[0]) - self._correction
-        if not MOST_CORRECTION < abs(error) < MOST_ERROR:
+        if abs(error) <= MOST_CORRECTION or not -1 < error < MOST_ERROR:
             self._error_before = 0.0
         elif is_set:
             if error * self._error_before > 0:
