@@ -84,8 +84,8 @@ def _stop_all() -> None:
     No DMA goes on, as the memory of a program that ends is given to others.
     """
     _loaded.clear()
-    for each in [*_open]:
-        each.stop()
+    while _open:
+        _open.pop().stop()
 
 
 def _set_clock(mhz: float) -> None:

@@ -404,7 +404,8 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     for _ in range(2):
         exec(cells[0], values)
     assert not module.dma.read(S2MM_DMASR) & HALTED
-    values["NodeOverlay"]("echo.bit")
+    for _ in range(2):
+        values["NodeOverlay"]("echo.bit")
     assert not module.stuck and module.dma.read(S2MM_DMASR) & HALTED
     exec(cells[0], values)
     assert not module.dma.read(S2MM_DMASR) & HALTED
