@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -66,12 +67,15 @@ def _init(args: argparse.Namespace) -> None:
 
 def _init_node(board: str, args: argparse.Namespace) -> Path:
     from firm_hdl.node import read_description, read_description_text
-    from firm_hdl.node.projects import EXAMPLE, write_project
+    from firm_hdl.node.projects import EXAMPLE, clock_problem, write_project
 
     if args.distro or args.path or args.bag or args.depends:
         args.usage_error("--distro, --path, --bag and --depends are for litex; a node has its own")
     description = read_description_text(EXAMPLE) if not args.file else read_description(args.file)
-    return write_project(board, description, args.file, args.out, sample=_sample(description))
+    folder = write_project(board, description, args.file, args.out, sample=_sample(description))
+    if problem := clock_problem(board, description):
+        print(f"warning: {problem}", file=sys.stderr)
+    return folder
 
 
 def _init_litex(args: argparse.Namespace) -> Path:

@@ -19,6 +19,9 @@ _XDC = """\
 #
 #   read_xdc -ref {module} {name}.xdc
 #
+# In a project, set USED_IN of this file to implementation: in synthesis, clocks of a block design
+# are not there yet.
+#
 # Do not declare the clocks asynchronous with set_clock_groups, which overrides the delays (UG903,
 # "Constraining Asynchronous Signals"). No version of Vivado has read this file yet.
 """

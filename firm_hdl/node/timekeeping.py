@@ -2,7 +2,9 @@
 
 Every response of the node has its time. The host knows when it sent the request and when the
 response came, so it knows the distance of the clocks up to half of that delay, as in NTP (RFC 5905,
-8). The clock is set once; then only its rate is changed, so that the time never jumps.
+8). The clock is set once; then only its rate is changed, so that the time never jumps. A clock that
+is further off than any crystal has another frequency than its description; it is set again and
+again.
 """
 
 from __future__ import annotations
@@ -28,6 +30,10 @@ DELAYS = 16
 MOST_CORRECTION = 500e-6
 """Largest change of the rate, as a fraction; crystals are within 100e-6."""
 
+MOST_ERROR = 10.0
+"""Of a clock, as a fraction. What looks like more is a time that was not set, or a host that has
+set its own."""
+
 _PROPORTIONAL, _INTEGRAL = 0.4, 0.08
 
 
@@ -49,6 +55,11 @@ class ClockKeeper:
         self._drift = 0.0
         # Time of the node less that of the host, at the last sample that counted.
         self.offset_ns: float | None = None
+        # Error of the clock as a fraction, once it has twice been too large to be corrected.
+        self.error: float | None = None
+        self._error_before = self._correction = 0.0
+        # When the clocks were compared, and their distance then.
+        self._compared: tuple[int, float] | None = None
 
     def sample(
         self, sent_ns: int, response: ControlResponse, received_ns: int
@@ -69,6 +80,7 @@ class ClockKeeper:
         offset = (2 * node_ns - sent_ns - received_ns) / 2
         if abs(offset) > max(STEP_NS, delay):
             self._last_ns = None
+            self._judge(received_ns, offset, is_set=True)
             # A time further ahead would have to be set back if the next delay is shorter.
             seconds, nanoseconds = divmod(received_ns + min(self._delays) // 2, SECOND_NS)
             return ControlRequest(
@@ -78,15 +90,29 @@ class ClockKeeper:
             )
         if delay > 2 * sorted(self._delays)[len(self._delays) // 2]:
             return None
+        self._judge(received_ns, offset, is_set=False)
         self.offset_ns = offset
         before, self._last_ns = self._last_ns, received_ns
         if before is None or received_ns <= before:
             return None
         error = offset / (received_ns - before)
         self._drift = _limited(self._drift - _INTEGRAL * error)
-        correction = _limited(self._drift - _PROPORTIONAL * error)
-        rate = round(self._nominal * (1 + correction))
+        self._correction = _limited(self._drift - _PROPORTIONAL * error)
+        rate = round(self._nominal * (1 + self._correction))
         return ControlRequest(operation=Operation.SET_RATE, argument=rate)
+
+    def _judge(self, received_ns: int, offset: float, *, is_set: bool) -> None:
+        """Note how far the clock is off. One large error alone may be a step of the host."""
+        before, self._compared = self._compared, (received_ns, 0.0 if is_set else offset)
+        if before is None or received_ns <= before[0]:
+            return
+        error = (offset - before[1]) / (received_ns - before[0]) - self._correction
+        if abs(error) <= MOST_CORRECTION or not -1 < error < MOST_ERROR:
+            self._error_before = 0.0
+        elif is_set:
+            if error * self._error_before > 0:
+                self.error = min(error, self._error_before, key=abs)
+            self._error_before = error
 
 
 def ptp_clock(device: str) -> Callable[[], int]:

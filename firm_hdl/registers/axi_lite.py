@@ -93,11 +93,9 @@ def WordBusSignature(address_bits: int) -> wiring.Signature:
     Members
     -------
     writes : Out(1)
-        In this cycle, a word is written.
+        In this cycle, a word is written. What cannot be written stays.
     write_word, write_data, write_bytes : Out
         Its address, its value, and which of its bytes are written.
-    write_fails : In(1)
-        Follows from `write_word` in the same cycle: the word cannot be written.
     reads : Out(1)
         In this cycle, a word is read.
     read_word : Out
@@ -110,7 +108,6 @@ def WordBusSignature(address_bits: int) -> wiring.Signature:
             "write_word": Out(address_bits - 2),
             "write_data": Out(32),
             "write_bytes": Out(4),
-            "write_fails": In(1),
             "reads": Out(1),
             "read_word": Out(address_bits - 2),
             "read_data": In(32),
@@ -123,9 +120,11 @@ class AxiLiteSlave(Component):
     """Answer AXI4-Lite from a plain bus of words.
 
     The two lowest bits of an address are ignored: an access uses the whole width of the bus (B1.1),
-    and WSTRB names the bytes that are written. A word that cannot be read or written is answered
-    with SLVERR. Address and data of a write may come in any order. The response is valid 2 cycles
-    after the request, and there is at most one write and one read in 2 cycles.
+    and WSTRB names the bytes that are written. A word that cannot be read is answered with SLVERR.
+    A write is always answered with OKAY: on a Cortex-A53, an error of a write comes too late for
+    the program that wrote, and stops the whole system. Address and data of a write may come in any
+    order. The response is valid 2 cycles after the request, and there is at most one write and one
+    read in 2 cycles.
 
     Parameters
     ----------
@@ -157,6 +156,7 @@ class AxiLiteSlave(Component):
             axi.arready.eq(~has_read),
             bus.writes.eq(may_write),
             bus.reads.eq(may_read),
+            axi.bresp.eq(OKAY),
         ]
         with m.If(axi.awvalid & axi.awready):
             m.d.sync += [bus.write_word.eq(axi.awaddr[2:]), has_address.eq(1)]
@@ -171,12 +171,7 @@ class AxiLiteSlave(Component):
         with m.If(axi.bready):
             m.d.sync += axi.bvalid.eq(0)
         with m.If(may_write):
-            m.d.sync += [
-                has_address.eq(0),
-                has_data.eq(0),
-                axi.bvalid.eq(1),
-                axi.bresp.eq(Mux(bus.write_fails, SLVERR, OKAY)),
-            ]
+            m.d.sync += [has_address.eq(0), has_data.eq(0), axi.bvalid.eq(1)]
         with m.If(axi.rready):
             m.d.sync += axi.rvalid.eq(0)
         with m.If(may_read):

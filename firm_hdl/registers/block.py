@@ -19,7 +19,7 @@ class RegisterBlock(Component):
     """Hold the registers of a map.
 
     What is written is on the outputs in the cycle after the write. Writing a word that has nothing
-    to write, and any use of an address without a register, fails and changes nothing.
+    to write, or no register, changes nothing. Reading an address without a register fails.
 
     Parameters
     ----------
@@ -70,7 +70,6 @@ class RegisterBlock(Component):
                 here = Signal(name=f"selects_{register.name}")
                 selected[register.address] = here
                 m.d.comb += here.eq(bus.write_word == register.address // WORD_BYTES)
-        m.d.comb += bus.write_fails.eq(~Cat(selected.values()).any())
         mask = Cat(bit.replicate(8) for bit in bus.write_bytes)
         for name, register, field in self.registers.fields():
             if field.kind not in ("setting", "pulse", "event"):

@@ -16,6 +16,7 @@ class _ChipBoard(ZynqBoard):
 
     has_room = True  # type: ignore[assignment]
     sample_seconds = 0.1
+    has_real_time = False
     silent_seconds = end_seconds = 60.0
     repeat_seconds = 5.0
 

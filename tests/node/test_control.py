@@ -103,9 +103,24 @@ def run(error, jitter_ns, seconds=90, keeper=None):
 
 @pytest.mark.parametrize("error", [-100e-6, 0, 37e-6, 100e-6])
 def test_a_clock_is_set_once_and_then_kept_in_step(error):
-    offsets, sets = run(error, jitter_ns=20_000)
-    assert sets == 1
+    keeper = ClockKeeper(NOMINAL)
+    offsets, sets = run(error, jitter_ns=20_000, keeper=keeper)
+    assert sets == 1 and keeper.error is None
     assert all(abs(offset) < 30_000 for offset in offsets[60:])
+
+
+@pytest.mark.parametrize("error", [-0.5, -2e-3, 900e-6, 76.923 / 75 - 1, 1])
+def test_a_clock_of_another_frequency_is_found(error):
+    keeper = ClockKeeper(NOMINAL)
+    run(error, jitter_ns=20_000, keeper=keeper)
+    assert keeper.error == pytest.approx(error, rel=0.2)
+
+
+def test_a_host_that_sets_its_own_clock_has_no_wrong_node():
+    keeper = ClockKeeper(NOMINAL)
+    for second in range(9):
+        sampled(keeper, START + second * 10**9, 2 * 10**9 if second in (3, 5) else 0)
+    assert keeper.error is None
 
 
 def test_a_clock_in_tai_has_the_seconds_of_the_system():

@@ -26,6 +26,8 @@ class Board(ABC):
         A board from which nothing whole came for so long is gone.
     repeat_seconds : float
         A request without an answer is repeated after so long.
+    has_real_time : bool
+        Whether its clock is to have the frequency of the description; not that of a simulation.
     end_seconds : float
         How long, at most, a bridge asks at its end what has arrived and what was lost.
     """
@@ -33,6 +35,7 @@ class Board(ABC):
     sample_seconds = 1.0
     silent_seconds = 5.0
     repeat_seconds = 0.25
+    has_real_time = True
     end_seconds = 1.0
 
     def __init__(self, name: str, frame_bytes: int | None = None) -> None:

@@ -7,16 +7,19 @@ Importing this module needs PYNQ.
 
 from __future__ import annotations
 
+import atexit
 import os
 import threading
 import time
 from contextlib import suppress
 from typing import Any
+from weakref import WeakSet
 
 from pynq import MMIO, Clocks, Overlay, allocate
 
 from firm_hdl.errors import UserError
-from firm_hdl.node.boards.zynq import ZynqBoard
+from firm_hdl.node.boards.board import BoardError
+from firm_hdl.node.boards.zynq import ZynqBoard, reset
 from firm_hdl.node.description import Description
 
 __all__ = ["NodeOverlay"]
@@ -35,12 +38,20 @@ _CLOCK_ERROR = 1e-3
 class NodeOverlay(Overlay):
     """The overlay of a node with the link `axi_dma`; its parameters are those of `pynq.Overlay`.
 
+    A download, and the end of the program, stop the DMA of each board that is still open.
+
     Example
     -------
     ::
 
         board = NodeOverlay("twist.bit").board(read_description("node.yaml"))
     """
+
+    def download(self, *arguments: Any, **options: Any) -> None:
+        """Load the overlay."""
+        _stop_all()
+        super().download(*arguments, **options)
+        _loaded.add(self)
 
     def board(self, description: Description, dma: str = "dma") -> ZynqBoard:
         """Set the clock of the node, and return the node as a board.
@@ -54,10 +65,27 @@ class NodeOverlay(Overlay):
         _set_clock(description.clock_hz / 1e6)
 
         def devices(*_: str) -> tuple[_Registers, _Buffer]:
+            if self not in _loaded:
+                raise BoardError("another overlay was loaded, or the program ends")
             mmio = MMIO(about["phys_addr"], about["addr_range"])
             return _Registers(mmio, about.get("parameters", {})), _Buffer()
 
         return ZynqBoard("pynq", dma, "buffer", description.link.buffer_bytes, devices)
+
+
+_loaded = WeakSet[NodeOverlay]()
+_open = WeakSet["_Registers"]()
+
+
+@atexit.register
+def _stop_all() -> None:
+    """Stop what is open: a read never returns while the FPGA is loaded, and Linux with it.
+
+    No DMA goes on, as the memory of a program that ends is given to others.
+    """
+    _loaded.clear()
+    while _open:
+        _open.pop().stop()
 
 
 def _set_clock(mhz: float) -> None:
@@ -79,28 +107,47 @@ class _Registers:
 
     def __init__(self, mmio: Any, parameters: dict[str, str]) -> None:
         self._mmio, self._parameters = mmio, parameters
+        self._lock, self._is_stopped = threading.Lock(), False
         self._reader, self._writer = os.pipe()
         os.set_blocking(self._reader, False)
         self._is_asked, self._is_open = threading.Event(), True
         self._thread = threading.Thread(target=self._poll, daemon=True)
         self._thread.start()
+        _open.add(self)
 
     def _poll(self) -> None:
         while self._is_asked.wait() and self._is_open:
-            if any(self._mmio.read(at) & _INTERRUPTS for at in _STATUS):
+            # A board that was stopped learns it from its next read.
+            if self._is_stopped or any(self._mmio_read(at) & _INTERRUPTS for at in _STATUS):
                 self._is_asked.clear()
                 os.write(self._writer, b"\0")
             else:
                 time.sleep(_POLL_SECONDS)
 
+    def _mmio_read(self, offset: int) -> int:
+        """Read a register; 0 after the stop."""
+        with self._lock:
+            return 0 if self._is_stopped else int(self._mmio.read(offset))
+
+    def stop(self) -> None:
+        """Reset the DMA, and touch it no more."""
+        reset(self)
+        with self._lock:
+            self._is_stopped = True
+
     def fileno(self) -> int:
         return self._reader
 
     def read(self, offset: int) -> int:
-        return int(self._mmio.read(offset))
+        value = self._mmio_read(offset)
+        if self._is_stopped:
+            raise BoardError("its DMA was stopped, as another overlay is loaded")
+        return value
 
     def write(self, offset: int, value: int) -> None:
-        self._mmio.write(offset, value)
+        with self._lock:
+            if not self._is_stopped:
+                self._mmio.write(offset, value)
 
     def take_interrupt(self) -> None:
         with suppress(BlockingIOError):
@@ -115,6 +162,7 @@ class _Registers:
         return None if text is None else int(text)
 
     def close(self) -> None:
+        _open.discard(self)
         self._is_open = False
         self._is_asked.set()
         self._thread.join()

@@ -57,6 +57,7 @@ class SimulatedBoard(Board):
     """
 
     sample_seconds = 0.1
+    has_real_time = False
     # An answer takes seconds on a busy machine, and a simulation that has ended says so.
     silent_seconds = 60.0
     # Its link loses nothing, and a request that is repeated takes its time.

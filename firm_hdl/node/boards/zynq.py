@@ -9,13 +9,14 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Literal, Protocol
 
 from firm_hdl.node.boards import descriptors
 from firm_hdl.node.boards.board import Board, BoardError
 from firm_hdl.node.boards.devices import DmaBuffer, Uio
 
-__all__ = ["Buffer", "Registers", "ZynqBoard", "open_devices"]
+__all__ = ["Buffer", "Registers", "ZynqBoard", "open_devices", "reset"]
 
 Channel = Literal["MM2S", "S2MM"]
 
@@ -177,7 +178,7 @@ class ZynqBoard(Board):
 
     def _reset(self, registers: Registers) -> bool:
         """Reset the DMA; return whether it has a scatter-gather engine."""
-        if not _reset(registers):
+        if not reset(registers):
             raise BoardError("the reset of the DMA does not end; does its clock run?")
         status = 0
         for channel, at in _AT.items():
@@ -270,7 +271,8 @@ class ZynqBoard(Board):
             return
         (registers, buffer), self._opened = self._opened, None
         # The DMA must not write into memory that others may use.
-        _reset(registers)
+        with suppress(BoardError):
+            reset(registers)
         registers.close()
         buffer.close()
 
@@ -394,8 +396,8 @@ def _problems(registers: Registers) -> str:
     return "; ".join(found) or "no DMASR has an error"
 
 
-def _reset(registers: Registers) -> bool:
-    """Reset both channels, as the bit of either does; return whether the reset has ended."""
+def reset(registers: Registers) -> bool:
+    """Reset both channels of a DMA, as the bit of either does; return whether it has ended."""
     registers.write(_AT["MM2S"] + _DMACR, _RESET)
     return _clears(registers, _AT["MM2S"] + _DMACR, _RESET)
 

@@ -58,6 +58,7 @@ class BoardSide:
         self._is_ending = False
         # When a restart may be reported again, and whether the last one was.
         self._report_at, self._is_reported = 0.0, True
+        self._reports_clock = board.has_real_time
 
     # Figures.
 
@@ -234,6 +235,13 @@ class BoardSide:
             again = "it has started again; " if session.restarts else ""
             if self._may_report(now) if again else self._is_reported:
                 self._report(f"board {self._board.name}: {again}ready")
+        if self._reports_clock and (error := session.clock_error) is not None:
+            self._reports_clock = False
+            mhz = self._description.clock_hz / 1e6
+            self._report(
+                f"board {self._board.name}: its clock is {100 * error:+.2g} % off, which is "
+                f"{mhz * (1 + error):.4g} MHz in place of {mhz:g}; its time jumps again and again"
+            )
         self.has_read_last = session.is_finished
         return messages
 

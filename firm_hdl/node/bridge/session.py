@@ -396,6 +396,11 @@ class Session:
         """Time of the node less that of the host, when the clocks were last compared."""
         return self._keeper.offset_ns
 
+    @property
+    def clock_error(self) -> float | None:
+        """Error of the node's clock as a fraction, if it is too large to be corrected."""
+        return self._keeper.error
+
     def lost_on_the_way(self) -> Counter[str]:
         """Return what was lost between the board and here, by cause."""
         counters = asdict(self._arrivals.receiver.counters)

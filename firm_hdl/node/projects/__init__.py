@@ -31,6 +31,7 @@ __all__ = [
     "EXAMPLE",
     "ProjectBoard",
     "board_named",
+    "clock_problem",
     "render",
     "write_folder",
     "write_project",
@@ -44,6 +45,8 @@ class ProjectBoard:
     title: str  # For people.
     names: tuple[str, ...]  # Other names of the board.
     part: str  # The chip, as Vivado names it.
+    # The PLL of the FPGA's clock, as boot loaders may set it. Linux divides its frequency.
+    plls_mhz: tuple[int, ...]
     # Names of templates beside this module, in which `NAME` is that of the node.
     files: tuple[str, ...]
 
@@ -53,12 +56,14 @@ BOARDS = {
         title="Kria K26 (KV260, KR260)",
         names=("kv260", "kr260", "k26"),
         part="xck26-sfvc784-2LV-c",
+        plls_mhz=(1000, 1500),
         files=("kria/README.md", "kria/Makefile", "kria/NAME.dtso", "kria/shell.json"),
     ),
     "pynq": ProjectBoard(
         title="PYNQ-Z2",
         names=("pynq-z2", "pynq-z1"),
         part="xc7z020clg400-1",
+        plls_mhz=(1000,),
         files=("pynq/README.md", "pynq/Makefile"),
     ),
 }
@@ -87,6 +92,27 @@ def board_named(name: str) -> str:
     close = get_close_matches(name.lower(), known, n=1, cutoff=0.5)
     hint = f"; did you mean '{close[0]}'?" if close else ""
     raise UserError(f"there are no projects for '{name}', but for {', '.join(known)}{hint}")
+
+
+_DIVISORS = sorted({one * other for one in range(1, 64) for other in range(1, 64)})
+"""Of a PLL: two numbers of 6 bits (UG585, UG1085)."""
+
+
+def clock_problem(board: str, description: Description) -> str | None:
+    """Return what is wrong with the clock of a node; `None` if the board makes it.
+
+    * `board`: a key of `BOARDS`.
+    """
+    mhz = description.clock_hz / 1e6
+    for pll in BOARDS[board].plls_mhz:
+        real = min((pll / each for each in _DIVISORS), key=lambda each: abs(each - mhz))
+        if abs(real / mhz - 1) > 1e-3:
+            return (
+                f"with a PLL of {pll} MHz, {BOARDS[board].title} runs the node at {real:.4g} MHz "
+                f"in place of {mhz:g}, which neither its time nor its timing is made for; 50, "
+                "62.5, 100 and 125 are safe values of clock_mhz"
+            )
+    return None
 
 
 def write_project(

@@ -18,6 +18,8 @@ _OPEN = """\
 from firm_hdl.node import read_description
 from firm_hdl.node.bridge import Client
 
+if "node" in globals():
+    node.close()  # While the FPGA is loaded, nothing may read it.
 description = read_description({file})
 has_board = find_spec("pynq") is not None  # False simulates the node.
 if has_board:

@@ -80,10 +80,11 @@ class FakeNode:
 class FakeBoard(Board):
     """A board with a `FakeNode`; `loses` says which frames do not come, in either direction.
 
-    Without a file to write to, nothing tells a bridge when there is room again.
+    Without a file to write to, nothing tells a bridge when there is room again. The clock stands.
     """
 
     has_room = True
+    has_real_time = False
 
     def __init__(self, node=None, loses=lambda frame: False):
         super().__init__("fake", 272)

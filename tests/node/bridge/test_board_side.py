@@ -82,6 +82,20 @@ def test_a_board_that_is_not_known_has_no_room(board):
     assert side.was_tried and not side.has_room and side.send(HEARD, b"x") == "no board"
 
 
+def test_a_clock_that_is_far_off_is_reported_once(board):
+    board.has_real_time = True
+    side, now = Side(board), [1_700_000_000 * 10**9]
+    side._clock = lambda: now[0]
+    board.sample_seconds = 0.0
+    for _ in range(60):
+        now[0] += 2 * 10**9
+        board.node.seconds += 1
+        side.care(1e9)
+        list(side.receive())
+    (line,) = (line for line in side.said if "clock" in line)
+    assert line.startswith("board fake: its clock is -") and " MHz in place of 100; " in line
+
+
 def test_what_waits_is_sent_when_the_board_can_be_written_to(board):
     side = Side(board).get_ready()
     assert side.files() == ([board.fileno()], []) and board.flushed == 0

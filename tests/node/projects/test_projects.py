@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 import itertools
 import json
 import math
@@ -11,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
 import types
 from collections import Counter
 from dataclasses import replace
@@ -103,7 +105,10 @@ RECORDER = """\
 proc unknown {args} {puts [join $args \\x1f]; return [lindex $args end]}
 proc get_board_parts {args} {return xilinx.com:k26c:part0:1.4}
 proc get_ipdefs {args} {return {CATALOG}}
-proc get_property {name object} {return [expr {$name eq "PROGRESS" ? "100%" : "0.5"}]}
+proc get_property {name object} {
+  set values {CONFIG.ACTUAL 75.0007 STATS.WNS 0.5 STATS.WHS 0.01 STATS.TPWS 0 PROGRESS 100% VALUES}
+  return [dict get $values [regsub {[.].*ACT_.*} $name .ACTUAL]]
+}
 source design.tcl
 """
 
@@ -112,7 +117,7 @@ source design.tcl
     ("board", "bus", "gate", "more"),
     [
         ("kria", 8, "ip:util_vector_logic", "registers: axi4lite"),
-        ("kria", 8, "inline_hdl:ilvector_logic", ""),
+        ("kria", 8, "inline_hdl:ilvector_logic:1.0", ""),
         ("pynq", 1, "", ""),
     ],
 )
@@ -123,9 +128,23 @@ def test_the_block_design_connects_all_of_the_ip(tmp_path, board, bus, gate, mor
         (out / "build/vivado" / place).mkdir(parents=True)
         (out / "build/vivado" / place / made).write_text(made)
     catalog = "gate" if "inline" in gate else ""
-    (out / "run.tcl").write_text(RECORDER.replace("CATALOG", catalog))
     command = [need("tclsh", shutil.which("tclsh")), "run.tcl"]
-    done = subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
+
+    def run(values=""):
+        text = RECORDER.replace("CATALOG", catalog).replace("VALUES", values)
+        (out / "run.tcl").write_text(text)
+        return subprocess.run(command, cwd=out, capture_output=True, text=True, check=False)
+
+    for values, said in (
+        ("CONFIG.ACTUAL 76.92", "plans 76.92 MHz in place of 75"),
+        ("STATS.WHS -0.01", "WHS is -0.01 ns"),
+        ("STATS.TPWS -1", "TPWS is -1 ns"),
+        ("STATS.WNS {}", "does not tell WNS"),
+    ):
+        done = run(values)
+        assert done.returncode == 1 and said in done.stderr, done.stderr
+        assert not (out / "build/little.bit").exists()
+    done = run()
     assert done.returncode == 0, done.stderr
     assert (out / "build/little.bit").is_file() and (out / "build/little.hwh").is_file() == (
         board == "pynq"
@@ -244,6 +263,9 @@ def test_make_makes_what_xmutil_loads(tmp_path, monkeypatch, name):
         assert read.splitlines() == [*wanted.values()]
 
 
+S2MM_DMASR, HALTED = 0x34, 1
+
+
 class Memory(np.ndarray):
     """A buffer of PYNQ, of which the DMA sees what was flushed."""
 
@@ -301,6 +323,7 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
     seen, lock = np.zeros(size, "u1"), threading.RLock()
     fabric = Fabric(node)
     fabric.dma = dma = AxiDma(memoryview(seen), address, fabric, length_bits=16)
+    is_loading, stuck = threading.Event(), []
 
     class Mmio:
         def __init__(self, where, length):
@@ -308,6 +331,8 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
 
         def read(self, offset):
             with lock:
+                if is_loading.is_set():
+                    stuck.append(offset)
                 dma.step()
                 return dma.read(offset)
 
@@ -326,6 +351,12 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
                     "parameters": parameters,
                 }
             }
+            self.download()
+
+        def download(self):
+            is_loading.set()
+            time.sleep(0.02)
+            is_loading.clear()
 
     def allocate(shape, dtype):
         array = np.zeros(shape, dtype).view(Memory)
@@ -336,6 +367,7 @@ def fake_pynq(node, address=0x1000_0000, size=1 << 19):
     module.__spec__ = ModuleSpec("pynq", None)
     module.MMIO, module.Overlay, module.allocate = Mmio, Overlay, allocate
     module.Clocks = Clocks("Clocks", (), {})
+    module.dma, module.stuck = dma, stuck
     return module
 
 
@@ -349,6 +381,8 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "pynq", module)
     monkeypatch.delitem(sys.modules, "firm_hdl.node.boards.pynq", raising=False)
     monkeypatch.chdir(out)
+    at_exit = []
+    monkeypatch.setattr(atexit, "register", lambda each: at_exit.append(each) or each)
     values = {}
     shown = []
     for cell in cells:
@@ -365,6 +399,20 @@ def test_the_notebook_runs_on_pynq(tmp_path, monkeypatch, capsys):
     assert re.search(r"/heard +subscribe +1 +0\n/said +publish +0 +1\n", printed)
     # The clock is that of the description, or none.
     assert module.Clocks.fclk0_mhz == 100
+    # Nothing reads while the FPGA is loaded, and the DMA stops: in the first cell once more, in a
+    # download beside an open node, and at the end of the program.
+    for _ in range(2):
+        exec(cells[0], values)
+    assert not module.dma.read(S2MM_DMASR) & HALTED
+    for _ in range(2):
+        values["NodeOverlay"]("echo.bit")
+    assert not module.stuck and module.dma.read(S2MM_DMASR) & HALTED
+    exec(cells[0], values)
+    assert not module.dma.read(S2MM_DMASR) & HALTED
+    for each in at_exit:
+        each()
+    assert module.dma.read(S2MM_DMASR) & HALTED
+    values["node"].close()
     other = replace(values["description"], clock_hz=75e6)
     with pytest.raises(UserError, match=r"nearest clock to 75 MHz is 76\.9231 MHz"):
         values["NodeOverlay"]("echo.bit").board(other)
@@ -444,6 +492,16 @@ def test_the_page_of_litex_quotes_the_project(tmp_path):
     assert {kind for kind, _ in quotes} == files.keys()
     for kind, text in quotes:
         assert text in (tmp_path / "out" / files[kind]).read_text()
+
+
+@pytest.mark.parametrize(
+    ("board", "mhz", "warns"),
+    [("kria", 75, True), ("kria", 62.5, False), ("pynq", 75, True), ("pynq", 66.7, False)],
+)
+def test_a_clock_that_no_divisor_makes_is_warned_of(tmp_path, capsys, board, mhz, warns):
+    text = LOOP.replace("BUS", "8").replace("clock_mhz: 75", f"clock_mhz: {mhz}")
+    init(board, text, tmp_path)
+    assert ("runs the node at 76.92 MHz in place of 75" in capsys.readouterr().err) is warns
 
 
 def test_what_is_no_project_is_refused_and_changes_nothing(tmp_path, monkeypatch, capsys):
