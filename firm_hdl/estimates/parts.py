@@ -42,8 +42,8 @@ _PARTS: dict[str, tuple[str, float, dict[str, tuple[float, float]]]] = {
         {"constant": (1159, 1393), "bus_bytes": (66, 81.9)},
     ),
     "rtps": (
-        "a participant, the slopes and the clock of earlier ones",
-        76.5,
+        "a participant, the slopes of earlier ones, the clock of one in a node that was placed",
+        99.2,
         {
             "constant": (6624, 3716),
             "memories": (41.5, 4.8),

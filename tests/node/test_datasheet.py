@@ -18,6 +18,6 @@ def test_the_page_has_the_clock_and_what_is_set_of_the_link():
 
     text = page(", static_peers: [10.0.0.1, 10.0.0.2]")
     assert "<td>static_peers</td><td>10.0.0.1 10.0.0.2</td>" in text
-    assert "Warning:</strong> the clock of 125 MHz is above the 76.5 MHz that are" in text
+    assert "Warning:</strong> the clock of 125 MHz is above the 99.2 MHz that are" in text
     assert "<b>125 MHz</b>" in text
     assert "static_peers" not in page() and "<td>domain</td><td>0</td>" in page()
