@@ -68,3 +68,24 @@ def test_machines_are_learned_updated_displaced_and_forgotten():
     simulator.add_clock(1e-6)
     simulator.add_testbench(test)
     simulator.run()
+
+
+def test_what_is_learned_while_a_lookup_waits_does_not_answer_it():
+    cache = ArpCache(4)
+
+    async def test(ctx):
+        ctx.set(cache.peer, {"ip": 10, "mac": 0xAA})
+        for strobe in (cache.learns, cache.inserts):
+            ctx.set(strobe, 1)
+        await ctx.tick()
+        ctx.set(cache.learns, 0)
+        # The cache enters the machine first, and looks for it then.
+        ctx.set(cache.ip, 10)
+        ctx.set(cache.look, 1)
+        await ctx.tick().until(cache.done)
+        assert (ctx.get(cache.found), ctx.get(cache.mac)) == (1, 0xAA)
+
+    simulator = Simulator(cache)
+    simulator.add_clock(1e-6)
+    simulator.add_testbench(test)
+    simulator.run()

@@ -34,9 +34,15 @@ def test_beside_a_datagram_that_fills_the_memory_there_is_room_for_none():
         await fragment(7, 0, 2048, more=1)
         await fragment(7, 2048, most - 2048, more=0)
         await fragment(8, 0, 8, more=1)
+        # One of 4,072 bytes with its source leaves two units: too few for a source and 16 bytes.
+        ctx.set(block.store.release, 1)
+        await ctx.tick()
+        ctx.set(block.store.release, 0)
+        await fragment(9, 0, 4072, more=1)
+        await fragment(8, 0, 16, more=1)
 
     simulator = Simulator(block)
     simulator.add_clock(1e-6)
     simulator.add_testbench(bench)
     simulator.run()
-    assert drops == [0, 0, 1]
+    assert drops == [0, 0, 1, 0, 1]

@@ -62,3 +62,12 @@ def test_other_packets_of_the_bench_are_built_anew(tmp_path, packets):
     build_one(tmp_path, stimuli=lambda message, plan: [b"\1", b"\2\3"])
     assert build_one(tmp_path, stimuli=lambda message, plan: [b"\1", b"\2\3"]).was_current
     assert not build_one(tmp_path, stimuli=lambda message, plan: packets).was_current
+
+
+@pytest.mark.parametrize("option", [{"registers": True}, {"leaf_ports": "axis"}, {"ip": "vivado"}])
+@pytest.mark.usefixtures("hollow")
+def test_a_folder_without_what_an_option_adds_is_built_anew(tmp_path, option):
+    build_one(tmp_path)
+    assert not build_one(tmp_path, **option).was_current
+    assert build_one(tmp_path, **option).was_current
+    assert not build_one(tmp_path).was_current

@@ -646,3 +646,18 @@ def test_a_design_with_cells_of_another_fpga_has_no_constraints():
         return constraints(rtlil.netlist_of(circuit), name="board", module="board_verilog")
 
     assert files(False).keys() == {"board.xdc", "board.sdc"} and not files(True)
+
+
+@pytest.mark.parametrize("periods", ["4.0 8.0", "8.0 4.0"])
+def test_a_crossing_takes_a_cycle_of_the_faster_clock_at_most(tmp_path, periods):
+    built = build_part(make_part("crossing", bus_bytes=1, beats=4), tmp_path)
+    clocks = f"set clocks {{{periods}}}\nproc get_property {{args}} {{\n"
+    clocks += "  set ::clocks [lassign $::clocks first]; return $first\n}\n"
+    source = f"source {{{built.folder / 'packet_crossing_1.xdc'}}}\n"
+    (tmp_path / "run.tcl").write_text(CONSTRAINTS + clocks + source)
+    done = subprocess.run(
+        [tclsh(), "run.tcl"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    calls = [line.split("\x1f") for line in done.stdout.splitlines()]
+    limits = [call[-1] for call in calls if call[0] in ("set_max_delay", "set_bus_skew")]
+    assert limits == ["4.0"] * 5

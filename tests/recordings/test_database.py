@@ -159,3 +159,13 @@ def test_nothing_is_written_beside_the_file(tmp_path: Path) -> None:
     before = {each.name: each.read_bytes() for each in tmp_path.iterdir()}
     assert len(messages(path)) == 1
     assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == before
+
+
+def test_a_large_database_may_take_more_steps(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("firm_hdl.recordings.database._MIN_CALLS", 20)
+    rows = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c LIMIT 10000)"
+    path = change(
+        write_db3(tmp_path / "x.db3", Channel(messages=())),
+        f"{rows} INSERT INTO messages(topic_id, timestamp, data) SELECT 1, x, x'00' FROM c",
+    )
+    assert len(messages(path)) == 10_000

@@ -173,3 +173,16 @@ def test_converters_behave_in_ghdl_as_in_amaranth(
     assert difference(want, simulate(vhdl, steps, widths, sizes, tmp_path)) is None
     if bus_bytes == 8:
         assert "latch" not in synthesize(vhdl, tmp_path).lower()
+
+
+def test_only_copies_of_the_top_bit_extend_a_sign() -> None:
+    a, b = Signal(4, name="a"), Signal(5, name="b")
+
+    def text(value: Value) -> str:
+        m = Module()
+        m.d.comb += b.eq(value)
+        return convert(m, ports=[a, b]).files["top.vhd"]
+
+    assert "sign_extend(" in text(Cat(a[:3], a[2], a[2]))
+    # The upper two bits, of which the lower one is the top bit of the three.
+    assert "sign_extend(" not in text(Cat(a[:3], a[2:4]))

@@ -96,3 +96,8 @@ class _ForgetsTheLast(PacketWidth):
 def test_a_fault_is_found(fault, widths):
     with pytest.raises(AssertionError):
         run(fault(*widths), of_all_sizes(20))
+
+
+@pytest.mark.parametrize(("in_bytes", "out_bytes"), [(8, 2), (4, 1)])
+def test_an_empty_packet_is_one_beat_on_a_narrow_bus_too(in_bytes, out_bytes):
+    run(PacketWidth(in_bytes, out_bytes), [b"", b"abc", b"", b"", bytes(in_bytes + 1), b""])

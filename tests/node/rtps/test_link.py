@@ -182,3 +182,13 @@ def test_a_silent_reader_holds_a_writer_for_three_seconds():
         yield from wires.until(lambda: came(cores[0]) == 11, 4.0)
 
     wires.run(script())
+
+
+@pytest.mark.thorough
+def test_a_peer_that_has_just_come_does_not_give_way():
+    # There is room for two peers.
+    wires = Wires(description_of(clock_hz=6_000.0), *map(core_of, (1, 2, 3)))
+    wires.run(wires.pause(0.85))
+    assert wires.counters["unsent"] >= 1
+    hosts = {to.host for to, _ in wires.sent}
+    assert {"10.0.0.1", "10.0.0.2"} <= hosts and "10.0.0.3" not in hosts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import struct
 from dataclasses import replace
 
 from amaranth.hdl import Cat, Value
@@ -208,3 +209,12 @@ def test_damaged_and_truncated_datagrams_end_and_count():
     for datagram, (found, dropped) in zip(datagrams, results, strict=True):
         wanted, is_wrong = expected(datagram)
         assert (found == wanted and dropped == is_wrong) or dropped, datagram.hex(" ")
+
+
+def test_parameters_of_a_big_endian_sample_are_read():
+    # `message.write` has little-endian parameters alone.
+    inline = struct.pack(">HH16sHH", 0x70, 16, bytes(range(16)), 1, 0)
+    head = struct.pack(">BBHHHIIiI", 0x15, 0b110, 52, 0, 16, READER, WRITER, 0, 7)
+    datagram = message.write(PEER, ()) + head + inline + bytes(8)
+    assert expected(datagram) == ([(EventKind.SAMPLE, PEER, 7, bytes(8))], False)
+    assert read([datagram]) == [expected(datagram)]
