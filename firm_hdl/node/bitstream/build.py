@@ -161,11 +161,13 @@ def build_bitstream(
             if misses:
                 write({REPORT: text}, None, force=True)
                 worst = min(misses, key=lambda each: each["reached_mhz"] / each["needed_mhz"])
+                hint = "A lower 'clock_mhz' helps, or a smaller 'bus_bytes'"
+                if worst["needed_mhz"] > 1.01e-6 * top.clock_hz:
+                    hint = "This is the clock of the PHY, for which the FPGA is too slow"
                 raise UserError(
                     f"'{description.node}' on {board.name} reaches {worst['reached_mhz']:g} MHz, "
-                    f"and its clock has {worst['needed_mhz']:g} MHz: no bitstream was made. A "
-                    f"lower 'clock_mhz' helps, or a smaller 'bus_bytes'; {folder / REPORT} has the "
-                    "path that takes longest"
+                    f"and its clock has {worst['needed_mhz']:g} MHz: no bitstream was made. "
+                    f"{hint}; {folder / REPORT} has the path that takes longest"
                 )
             report(f"packs {family.bitstream}")
             command = [*tools.packer.command, *family.pack, family.netlist[1], family.bitstream]
