@@ -7,11 +7,10 @@
 // taken a byte for a long time.
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 #include "Vnode.h"
+#include "pipe.h"
 #include "verilated.h"
 
 namespace {
@@ -25,18 +24,6 @@ std::vector<uint8_t> sent;
 uint32_t random_number() {
   random_state ^= random_state << 13, random_state ^= random_state >> 7, random_state ^= random_state << 17;
   return random_state >> 16;
-}
-
-template <typename Number>
-Number get() {
-  Number number = 0;
-  if (std::fread(&number, sizeof number, 1, stdin) != 1) std::exit(0);
-  return number;
-}
-
-template <typename Number>
-void put(Number number) {
-  std::fwrite(&number, sizeof number, 1, stdout);
 }
 
 // Run a cycle, and return whether the node took the byte that is offered.

@@ -6,11 +6,10 @@
 // and the cycle (64) of the last byte of a frame that came; at the end of a batch, a byte 0 and the cycle (64).
 
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 #include "Vnode.h"
+#include "pipe.h"
 #include "verilated.h"
 #include "verilated_vcd_c.h"
 
@@ -23,18 +22,6 @@ VerilatedVcdC trace;
 bool traces = false;
 uint64_t cycles = 0, began = 0;
 std::vector<uint8_t> sent;
-
-template <typename Number>
-Number get() {
-  Number number = 0;
-  if (std::fread(&number, sizeof number, 1, stdin) != 1) std::exit(0);
-  return number;
-}
-
-template <typename Number>
-void put(Number number) {
-  std::fwrite(&number, sizeof number, 1, stdout);
-}
 
 void cycle() {
   node.aclk = 0;
