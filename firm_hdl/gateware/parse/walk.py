@@ -213,6 +213,8 @@ class Walk:
             aborts=aborts,
         )
         if revisit is not None:
+            # A length that is charged is large, so the state after it is its body, and tells which
+            # length it was. The flag sends the state of the length to its exit.
             states = self.program.states
             begun = {s.body.to: s.number for s in states if s.length is not None and s.body}
             m.d.sync += self.revisits.eq(revisit | (self.revisits & ~issue))
