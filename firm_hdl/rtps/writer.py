@@ -425,8 +425,8 @@ class Writer:
 
     def _heartbeat(self, proxy: _Proxy, final: bool) -> Heartbeat:
         self._count = (self._count + 1) & 0x7FFF_FFFF
-        # A sample for others may have left the history. If the reader has lost its GAP, it has to ask
-        # for it, and would count it as lost if the first number were above.
+        # A sample for others may have left the history. If the reader has lost its GAP, it has to
+        # ask for it, and would count it as lost if the first number were above.
         lowest = min((next(iter(self._changes), self.last + 1), *proxy.skipped[:1]))
         return Heartbeat(
             reader=proxy.guid.entity,
