@@ -131,6 +131,8 @@ class ZynqBoard(Board):
         self._sends = self._has_stopped = self._is_split = False
         self._rings = {}
         self._opened = self._devices(*self._names)
+        # PG021 has this order: pointers to descriptors while a channel is halted, then RS, then
+        # what begins a transfer, which is a tail or a length.
         try:
             registers, buffer = self._opened
             self._check_sizes(registers, buffer)
