@@ -50,20 +50,6 @@ class Engine(wiring.Component):
     table of matched endpoints, whose state says what is due. So each datagram that is sent, and
     each event, takes a bounded number of cycles, and nothing waits for a peer.
 
-    What it does, in states; all lead to `IDLE` again::
-
-        EVENT    --> FIND_PEER | PLACE --> PLACED --> BUILTIN | FIND --> FOUND --> by kind --> DONE
-        SECOND
-        INTAKE   <-> ACKNOWLEDGED --> FREED
-        ANNOUNCE --> datagram
-        ROW      --> ROW_READ --> ROW_STATE --> ROW_LOWER --> WRITES | LISTENS --> STORE --> NEXT
-        WRITES   --> REPAIR | FETCH --> FETCHED --> FOUND_SAMPLE (--> IDENTITY ..) --> datagram
-        LISTENS  --> COUNT --> datagram
-        datagram  =  PEER --> PEER_READ --> WAY --> JOB --> SEND --> SENDING --> STORE
-
-    An announced endpoint goes through `FIND` twice: for the writer of SEDP, whose sample it is, and
-    for itself (`second`), which leads from `FOUND` to `MATCH` and `MATCHED`.
-
     A place for a peer is free after its lease. Without a free one, a stranger gives way, 3 seconds
     after it came: a peer without a matched endpoint, or that has acknowledged nothing. So
     names that somebody invents do not keep others out, and those who answer are never displaced.
@@ -154,6 +140,19 @@ class Engine(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
+        # All states lead to `IDLE` again:
+        #
+        #   EVENT    -> FIND_PEER | PLACE -> PLACED -> BUILTIN | FIND -> FOUND -> by kind -> DONE
+        #   SECOND
+        #   INTAKE  <-> ACKNOWLEDGED -> FREED
+        #   ANNOUNCE -> datagram
+        #   ROW      -> ROW_READ -> ROW_STATE -> ROW_LOWER -> WRITES | LISTENS -> STORE -> NEXT
+        #   WRITES   -> REPAIR | FETCH -> FETCHED -> FOUND_SAMPLE (-> IDENTITY ..) -> datagram
+        #   LISTENS  -> COUNT -> datagram
+        #   datagram =  PEER -> PEER_READ -> WAY -> JOB -> SEND -> SENDING -> STORE
+        #
+        # An announced endpoint goes through `FIND` twice: for the writer of SEDP, whose sample it
+        # is, and for itself (`second`), which leads from `FOUND` to `MATCH` and `MATCHED`.
         m = Module()
         s = State(m, self)
         compared = compare(m, s)

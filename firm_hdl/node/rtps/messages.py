@@ -62,15 +62,6 @@ class MessageReader(wiring.Component):
     the rest of its datagram invalid; what comes before counts (8.3.4.1). Sequence numbers above
     ``2**32 - 1`` are not valid here.
 
-    A datagram goes through these states, and what is malformed to `DROP`, and to `START` again::
-
-        START      --> HEADER --> EVENT (SOURCE) --> SUBMESSAGE
-        SUBMESSAGE --> LENGTH --> CHECK --> FIELDS --> HEARTBEAT | SET --> EVENT, or --> DATA
-        DATA       --> BEFORE_INLINE (--> PARAMETERS --> LISTED) --> CONTENT
-        CONTENT    --> EVENT, or of SPDP, SEDP --> ENCAPSULATION --> PARAMETERS --> LISTED --> EVENT
-        EVENT      --> PAYLOAD --> DRAIN, or --> FRAGMENTS (--> EVENT --> DRAIN)
-        each       --> SKIP --> SUBMESSAGE
-
     A word of 4 bytes is taken per cycle, and a byte of parameters and of fragments; some cycles
     more go by for each submessage and each parameter, and those in which an event waits.
     Submessages and payloads begin with a word (9.4.1); others are not valid.
@@ -133,6 +124,14 @@ class MessageReader(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
+        # A datagram goes through these states, and what is malformed to `DROP`:
+        #
+        #   START      -> HEADER -> EVENT (SOURCE) -> SUBMESSAGE
+        #   SUBMESSAGE -> LENGTH -> CHECK -> FIELDS -> HEARTBEAT | SET -> EVENT, or -> DATA
+        #   DATA       -> BEFORE_INLINE (-> PARAMETERS -> LISTED) -> CONTENT
+        #   CONTENT    -> EVENT; of SPDP, SEDP -> ENCAPSULATION -> PARAMETERS -> LISTED -> EVENT
+        #   EVENT      -> PAYLOAD -> DRAIN, or -> FRAGMENTS (-> EVENT -> DRAIN)
+        #   each       -> SKIP -> SUBMESSAGE -> START, when the datagram has no more
         m = Module()
         packets, event, fragments = self.packets, self.events.payload, self.fragments
         # The word, its first byte lowest; and as a number in the sender's order.
