@@ -226,6 +226,8 @@ class Intake(wiring.Component):
                     samples.reads.eq(1),
                 ]
                 m.next = "COPY"
+                # One more must fit, by number and by bytes; if not, the oldest gives way. If that
+                # one is among the last `depth`, counting the new one, readers are asked first.
                 with m.If((kept == MOST_SAMPLES) | (state.used + in_memory(length) > limit)):
                     m.next = "FORGET"
                     with m.If((state.free == 0) & (kept < depth)):
@@ -237,6 +239,7 @@ class Intake(wiring.Component):
                     m.next = "ROOM"
                     with m.If(asked.free == 0):
                         m.next = "IDLE"
+            # `ROOM` has read the oldest sample, for its size.
             with m.State("FORGET"):
                 m.d.sync += [
                     state.gone.eq(asked.oldest),
@@ -245,6 +248,8 @@ class Intake(wiring.Component):
                 ]
                 m.next = "ROOM"
             with m.State("COPY"):
+                # `fed` closes the way behind the last beat: the next message may wait on `sent`
+                # already, while words of this one are still in the converter of widths.
                 m.d.comb += [
                     width.packets_in.valid.eq(sent.valid & ~fed),
                     sent.ready.eq(width.packets_in.ready & ~fed),

@@ -84,6 +84,7 @@ def matching(m: Module, s: State, compared: tuple[Signal, ...]) -> None:
             m.d.comb += s.engine.unsent.eq(~s.has_free)
             with m.If(s.has_free):
                 m.d.sync += s.row_at.eq(s.free)
+                # The sweep under way has to come to the row, and so has the next one.
                 for last in (s.top, s.seen):
                     with m.If(s.free > last):
                         m.d.sync += last.eq(s.free)
@@ -119,7 +120,10 @@ def matching(m: Module, s: State, compared: tuple[Signal, ...]) -> None:
 
 
 def compare(m: Module, s: State) -> tuple[Signal, ...]:
-    """Find the endpoint of ours that has the topic and the type of what is announced."""
+    """Find the endpoint of ours that has the topic and the type of what is announced.
+
+    Returns registers, which follow `announced` by a cycle: `FIND` takes more.
+    """
     event, announced = s.engine.events.payload, s.engine.announced
     is_writer = event.writer == raw(PUBLICATIONS_WRITER)
     has_same, local = Signal(), Signal.like(s.row.local)
