@@ -272,7 +272,7 @@ def _sweep(m: Module, s: State) -> None:
         m.next = "ROW_LOWER"
         # A row outlives its peer until a sweep comes to it; `kill` waits for that.
         with m.If(~s.live.bit_select(row.peer, 1)):
-            m.d.sync += row.valid.eq(0)
+            m.d.sync += [row.valid.eq(0), s.has_room.eq(1)]
             m.next = "STORE"
     with m.State("ROW_LOWER"):
         m.d.sync += s.lower.eq(Mux(row.first > s.gone, row.first, s.gone + 1))

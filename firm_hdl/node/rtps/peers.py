@@ -71,8 +71,11 @@ def announcements(m: Module, s: State) -> None:
                 s.multicast_due.eq(1),
                 s.static.eq(s.most_static),
                 s.due.eq(s.live),
+                s.has_room.eq(0),
                 *(young.eq(Mux(young == 0, 0, young - 1)) for young in s.young),
             ]
+            with m.If(s.has_room):
+                m.d.sync += [s.again.eq(s.again | s.refused), s.refused.eq(0)]
             m.next = "IDLE"
         with m.If(s.live.bit_select(peer, 1) & (left.data == 0)):
             s.kill(m, peer)
@@ -109,9 +112,13 @@ def participants(m: Module, s: State) -> None:
         s.scan(m, s.peers_memory)
         with m.If(s.has_row & (is_same | (peer == s.engine.peers - 1))):
             m.d.sync += s.known.eq(is_same)
+            m.next = "DONE"
             with m.If(is_same):
                 m.d.comb += s.leases.write.en.eq(1)
-            m.next = "DONE"
+                # A row that it lacked is free: its endpoints are asked for from the first one on.
+                with m.If(s.again.bit_select(peer, 1)):
+                    m.d.sync += [s.again.bit_select(peer, 1).eq(0), s.at.eq(0)]
+                    m.next = "BUILTIN"
         with m.Else():
             m.d.sync += [
                 Value.cast(peer_row).eq(s.peers_memory.word),
@@ -159,8 +166,7 @@ def participants(m: Module, s: State) -> None:
             m.next = "BUILTIN"
 
     with m.State("BUILTIN"):
-        # 8.5.5.1: the endpoints of SEDP are matched with those of each participant. `at` is 0: no
-        # memory was scanned since `IDLE`.
+        # 8.5.5.1: the endpoints of SEDP are matched with those of each participant. `at` is 0.
         #
         #   row of the peer | 0             | 1              | 2             | 3
         #   its endpoint    | pubs writer   | subs writer    | pubs reader   | subs reader

@@ -106,6 +106,10 @@ class State:
         self.ahead, self.last_ahead = Signal(signed(33)), Signal(signed(33))
         self.is_unknown = Signal()
         self.free, self.has_free = Signal(range(rows)), Signal()
+        # How many rows the peer has; for which peers a row was missing; whether one has become free
+        # since the last second; and which peers are to announce their endpoints again.
+        self.held, self.has_room = Signal(range(rows + 1)), Signal()
+        self.refused, self.again = Signal(peers), Signal(peers)
         # Which peers there are; which are matched, have acknowledged a sample, have to be told.
         self.live, self.matched, self.due = Signal(peers), Signal(peers), Signal(peers)
         self.answers = Signal(peers)
@@ -239,6 +243,7 @@ class State:
             self.has_word.eq(0),
             self.has_row.eq(0),
             self.has_free.eq(0),
+            self.held.eq(0),
         ]
 
     def scan(self, m: Module, memory: BlockMemory) -> None:
