@@ -10,6 +10,7 @@ from lab.formal.blocks import (
     drop_gate,
     ethernet,
     fifos,
+    history,
     judges,
     records,
     rtps,
@@ -38,5 +39,6 @@ def all_studies() -> list[Study]:
         axi_lite,
         ethernet,
         rtps,
+        history,
     )
     return [study for module in modules for study in module.studies()]
