@@ -149,6 +149,7 @@ class Intake(wiring.Component):
             for name in ("bytes", "base", "depth", "replays")
         )
         mask, number = (limit - 1)[:address], Signal(32)
+        kept = Signal(range(MOST_SAMPLES + 1))
 
         def place_of(writer: Value, number: Value) -> Value:
             return Cat(number[: ceil_log2(MOST_SAMPLES)], writer)
@@ -173,6 +174,7 @@ class Intake(wiring.Component):
                 )
             ),
             number.eq(state.last + 1),
+            kept.eq(state.last - state.gone),
             samples.write_at.eq(place_of(writer, number)),
             samples.write_word.at.eq(state.at),
             samples.write_word.bytes.eq(length),
@@ -219,9 +221,7 @@ class Intake(wiring.Component):
                     m.d.comb += self.unsent.eq(1)
                     m.next = "DISCARD"
             with m.State("ROOM"):
-                kept = Signal(range(MOST_SAMPLES + 1))
                 m.d.comb += [
-                    kept.eq(state.last - state.gone),
                     samples.read_at.eq(place_of(writer, asked.oldest)),
                     samples.reads.eq(1),
                 ]
@@ -235,7 +235,8 @@ class Intake(wiring.Component):
             with m.State("ASK"):
                 m.d.comb += asked.asks.eq(1)
                 with m.If(asked.answers):
-                    m.d.sync += state.free.eq(asked.free)
+                    # A reader that comes later is not asked about those, but about later ones.
+                    m.d.sync += state.free.eq(Mux(asked.free < kept, asked.free, kept))
                     m.next = "ROOM"
                     with m.If(asked.free == 0):
                         m.next = "IDLE"
