@@ -76,6 +76,15 @@ class DeserializerProgram(Program[DeserializerState]):
         return any(length.nul for length in self.plan.lengths.values())
 
     @property
+    def may_have_no_bytes(self) -> bool:
+        """Whether a state before the last one may have no bytes.
+
+        Its leaves are empty messages, or it takes a rest that may be 0.
+        """
+        inner = (s for s in self.states if s.body or any(way.to is not None for way in s.exits))
+        return any(each.last_offset < 0 for each in inner)
+
+    @property
     def count_bits(self) -> int:
         """Bits of the largest legal length."""
         return max((each.max_count.bit_length() for each in self.lengths.values()), default=1)

@@ -113,6 +113,16 @@ class Walk:
         # First byte after the state's map or word; bytes in the buffer from there on, negative if
         # bytes of the state are missing.
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
+        # A state without bytes ends at the first byte of the ring. If the ring is full, the distance
+        # from there to the limit is all of it, and looks negative:
+        #
+        #   | word 0 | word 1 | ... | word 7 |
+        #   ^ step_end                       ^ limit
+        #
+        self.fills_ring: Value | None = None
+        if program.may_have_no_bytes:
+            full = self.left == 1 << (ring.bits - 1)
+            self.fills_ring = named(m, "fills_ring", full, "a step without bytes, a full buffer")
         self.present = Signal(name="present")  # All bytes of the state are in the buffer.
         # The next state is an exit of this one: whatever the length is; always, or because of the
         # length. Else it is its body.
@@ -126,7 +136,7 @@ class Walk:
             self.step_end.eq(self.last_at + 1),
             # limit - last_at - 1.
             self.left.eq(arrival.limit + self.not_last_at),
-            self.present.eq(~self.left[-1]),
+            self.present.eq(self._or_full(~self.left[-1])),
             self.exits_always.eq(self.begins_nothing | (self.is_words & flow.words.last)),
             self.done.eq(
                 self.exits_always
@@ -138,6 +148,9 @@ class Walk:
             self.ends_message.eq(self.at_end | (flow.exit_ends & self.exits_always)),
             self.ends_packet.eq(self.ends_message & arrival.ended),
         ]
+
+    def _or_full(self, value: Value) -> Value:
+        return value if self.fills_ring is None else value | self.fills_ring
 
     @property
     def too_early(self) -> Value:
@@ -158,7 +171,7 @@ class Walk:
             Signal(name="cut"),
         )
         trailing, within = Signal(name="trailing"), ring.position("nul_within")
-        too_many = exceeds(self.left[:-1], self.program.plan.max_trailing_bytes)
+        too_many = self._or_full(exceeds(self.left[:-1], self.program.plan.max_trailing_bytes))
         good = Signal(name="bytes_good")
         wrong_header = any_of(
             [self.flow.step[state] & flags.mismatch[k] for k, state in enumerate(flags.states)]

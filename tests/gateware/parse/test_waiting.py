@@ -57,6 +57,23 @@ def test_an_empty_packet_has_the_empty_messages_that_it_is_made_of():
     assert transfers_with_pauses(message, [b"", b""], 1) == [[0, 0], [3, 1], [3, 1]]
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "good"),
+    [
+        ({}, {"a": "uint64[20]"}, bytes(160)),
+        ({"x": "uint64"}, {"a": "uint64[20]"}, bytes(168)),
+        ({"x": "uint8[]"}, {"a": "uint64[20]"}, b"\x0c" + bytes(3 + 12 + 160)),
+        ({"x": "uint64"}, {}, bytes(8)),
+    ],
+)
+def test_steps_without_bytes_go_on_when_the_buffer_is_full(before, after, good):
+    """While the empty messages are counted, eight words come, and that is the whole buffer."""
+    message = make("ros1", {**before, "e": (NOTHING, "[12]"), **after})
+    harness = Harness(Deserializer(message, bus_bytes=8), None)
+    seen = harness.run_packets([good, good + bytes(160), good], RunOptions())
+    assert list(seen.statuses) == [Status.OK, Status.TRAILING, Status.OK]
+
+
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("bus_bytes", [2, 8])
 def test_what_came_before_the_end_of_a_packet_is_kept_until_it_is_taken(bus_bytes):
