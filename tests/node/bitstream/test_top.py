@@ -205,7 +205,7 @@ def test_a_board_of_ones_own_may_lack_a_link_or_some_of_its_pins(tmp_path):
     lacks = "4:7-57: mine lacks pins of the link: uart.tx"
     assert lacks in errors(description(), str(tmp_path / "mine.yaml"))
     whole = "title: t\ndevice: LFE5U-25F\npackage: CABGA256\nclock: {pin: P6, mhz: 25}\n"
-    (tmp_path / "none.yaml").write_text(f"{whole}speed: 6\npins: {{led: A1}}\n")
+    (tmp_path / "none.yaml").write_text(f"{whole}speed: 6\npins: {{led: {{pins: A1}}}}\n")
     lacks = "4:7-3: none has no link; for 'udp', the top level is yours to write"
     assert lacks in errors(description(changes={UART: "link: udp"}), str(tmp_path / "none.yaml"))
 
