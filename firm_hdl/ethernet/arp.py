@@ -79,6 +79,8 @@ class ArpReceiver(wiring.Component):
             self.reply.kind.eq(ARP_REPLY),
             self.reply.header_byte.eq(byte),
         ]
+        # `peer` is a shift register. It stays for 34 cycles behind a frame: 12 in which none comes,
+        # 14 bytes of Ethernet, and 8 of the next message. The cache needs it for 21.
         m.d.sync += [self.learns.eq(0), self.inserts.eq(0), self.other.eq(0), self.full.eq(0)]
         with m.If(came.valid & self.is_arp & came.payload.end):
             m.d.sync += place.eq(0)
@@ -191,6 +193,12 @@ class ArpCache(wiring.Component):
         new = Signal(shape)
         always = Signal()
         # A step behind `number`, and two steps behind.
+        #
+        #   number            | 0 | 1    | 2    | 3
+        #   entry             |   | of 0 | of 1 | of 2
+        #   same, same_entry  |   |      | of 0 | of 1
+        #
+        # So the entry that is found is `number` - 2, and before 2, `same` is of an earlier action.
         entry = Signal(shape)
         same, same_entry = Signal(), Signal(shape)
         victim, place = Signal(range(count)), Signal(range(count))

@@ -163,7 +163,8 @@ class Reassembler(wiring.Component):
             ]
             m.d.sync += [source_left.eq(source_left - 1), source.eq(source << 8)]
 
-        # All bytes have come a cycle before `ends`.
+        # All bytes have come a cycle before `ends`. A fragment that others follow has a multiple of
+        # 8 bytes (RFC 791, 3.2), and at least 8; the last one ends where the length of UDP says.
         ends, more, last = Signal(), Signal(), Signal()
         gone = Signal(2)
         m.d.sync += [
@@ -201,7 +202,8 @@ class Reassembler(wiring.Component):
             with m.If(good & ~header.more):
                 m.d.sync += [source_left.eq(_SOURCE_BYTES), source.eq(header.source)]
 
-        # The part of number 1 lies upside down.
+        # The part of number 1 lies upside down: its byte n is n bytes before the last one of the
+        # memory. So both have the same addresses, which are inverted for that part.
         store = self.store
         bank_bits = min(address_bits, _BANK_BITS)
         head, to, at_byte = (Signal(address_bits, name=n) for n in ("head", "to", "at_byte"))

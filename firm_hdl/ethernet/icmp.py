@@ -118,7 +118,8 @@ class EchoReceiver(wiring.Component):
             with m.Else():
                 m.d.comb += reply.payload_write.eq(header.icmp)
                 m.d.sync += count.eq(count + 1)
-        # The sum is known when no other byte of the header comes.
+        # The sum is known when no other byte of the header comes. The type goes from 8 to 0, so the
+        # checksum, which is the complement of a sum, rises by 8 << 8.
         with m.If(writes_sum[0]):
             total = add_word(Cat(checksum, Const(0, 1)), Const(_REQUEST << 8, 16))
             m.d.sync += checksum.eq(total[:16] + total[16])

@@ -297,7 +297,8 @@ class PayloadCheck(wiring.Component):
         ]
         pseudo = header.udp & first & (header.place >= 12)
         m.d.comb += adds.eq(came.valid & ~came.payload.end & (in_payload | pseudo))
-        # The length of UDP counts twice, which is a rotation.
+        # The length of UDP counts twice, as it is in the pseudo header, too. Twice a word in one's
+        # complement is the word rotated by a bit. A byte is half a word, in one half or the other.
         twice = in_payload & header.udp & first & (header.index[1:] == 2)
         m.d.sync += self.right.eq(is_all_ones(state.total) | (header.udp & state.no_sum))
         with m.If(self.load):

@@ -61,6 +61,7 @@ class _Templates:
         # An echo reply has type 0 and code 0.
         self._add("echo", [*echo, 0, 0, *field(0, 2)])
         self._add("echo rest", echo)
+        # Without an identification: what is never cut needs none (RFC 6864).
         udp = [*start, *field(10, 2), 0, 0, *_DO_NOT_CUT.to_bytes(2, "big"), _TTL, UDP, *rest]
         self._add("datagram", [*udp, *field(16, 8)])
         for number, group in enumerate(groups):
@@ -326,8 +327,13 @@ class FrameSender(wiring.Component):
             with m.State("LAST BYTE"):
                 m.next = "HOP"
             with m.State("HOP"):
+                # After that, a carry means that the rest is 0. So adding it in `START` carries no
+                # more.
                 m.d.sync += total.eq(add_word(total, Const(0, 16)))
+                # Without what templates have of it: the header of IPv4, of UDP, and of an echo the
+                # type, the code and the checksum.
                 m.d.sync += left.eq(length - Mux(is_reply, Mux(kind == ECHO, 24, 20), 28))
+                # The address of a group in hardware (RFC 1112, 6.4): 23 bits of it are the group's.
                 m.d.sync += hardware.eq(Cat(key[:23], Const(0x01005E << 1, 25)))
                 m.next = "LOOK"
                 with m.If(key[28:] == 0b1110):

@@ -61,13 +61,16 @@ def add_word(total: Value, word: Value) -> Value:
     """Add 16 bits to a sum in one's complement (RFC 1071).
 
     A sum has 17 bits: the highest one is a carry that is added with the next word, so that one
-    carry chain is enough.
+    carry chain is enough. It comes in from a bit below the lowest one: 1 + carry carries, or not.
     """
     return (Cat(Const(1, 1), total[:16]) + Cat(total[16], word))[1:18]
 
 
 def is_all_ones(total: Value) -> Value:
-    """Whether a sum in one's complement is 0xFFFF, which that of right data is."""
+    """Whether a sum in one's complement is 0xFFFF, which that of right data is.
+
+    Its carry may be still to be added.
+    """
     return (total == 0x0FFFF) | (total == 0x1FFFE)
 
 

@@ -284,7 +284,8 @@ class DatagramReader(wiring.Component):
                 store.release.eq(release & chosen),
             ]
         m.d.comb += byte.eq(Array(store.byte for store in stores)[source])
-        # Steps of reading: whether there is a byte, and whether it is the last one.
+        # Steps of reading: whether there is a byte, and whether it is the last one. A byte that is
+        # taken is two steps behind: in the store's register, then on `byte`.
         there, last = Signal(2), Signal(2)
         left = Signal(16)
         # Addresses, ports, and lengths, in the order of the bytes, the first one highest.
@@ -494,6 +495,8 @@ class UdpTransmitter(wiring.Component):
                     ]
                     with m.If(came.payload.last):
                         m.next = "CARRY"
+                        # `rest` bytes are missing with this word, so byte `rest` - 1 is its last
+                        # one.
                         fits = came.payload.last_be.bit_select((rest + 3)[:2], 1) & (rest <= 4)
                         m.d.sync += ended.eq(fits & (rest != 0))
             with m.State("CARRY"):
@@ -506,6 +509,8 @@ class UdpTransmitter(wiring.Component):
                 with m.State(state):
                     m.d.sync += total.eq(add_word(total, Cat(part, Const(0, 16))[:16]))
                     m.next = following_state
+            # A checksum of 0 is sent as 0xFFFF (RFC 768). The last word was 0 or 1; so if a carry
+            # is left, the sum is at most 1, and adding the carry does not carry again.
             with m.State("FOLD"):
                 folded = total[:16] + total[16]
                 m.d.sync += checksum.eq(Mux(folded[:16].all(), 0xFFFF, ~folded[:16]))

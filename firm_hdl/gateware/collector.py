@@ -126,7 +126,8 @@ class Collector(wiring.Component):
             return value
 
         # What follows the state: an exit (`done`), and the end of the message. A last state that
-        # only takes a rest is skipped if there is no rest.
+        # only takes a rest is skipped if there is no rest. A CDR string has one in any case: its
+        # NUL.
         done = Signal()
         ends = Signal()
         is_begin = begins_run | begins_loop
@@ -306,12 +307,16 @@ class Collector(wiring.Component):
             items.eq(Mux(takes_rest, flow.rest_bytes(rest), item_word)),
             map_size.eq(map_bytes + Mux(two_word_map, bus, 0)),
             begins.eq(begun | items.any() | nul | map_bytes.any()),
+            # If the map has two words, the word of items is the first of them: nothing precedes it.
             to_map.eq(Mux(two_word_map, 0, items) + nul + map_addend),
             to_end.eq(map_size + items_align[0]),
             end_mask.eq(items_align[1]),
         ]
+        # The next packet starts with a beat (rule 7 of docs/reference/streams.md), so the end is
+        # rounded up. An empty packet has a beat as well (rule 6).
         with m.If(ends):
             m.d.comb += [to_end.eq(Mux(begins, map_size + (bus - 1), bus)), end_mask.eq(bus - 1)]
+        # The state may start in the last lane of a beat.
         most_bytes = named(m, "most_bytes", to_map + to_end + (bus - 1))
         with m.If(complete):
             m.d.sync += begun.eq(begins & ~ends)

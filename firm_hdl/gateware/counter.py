@@ -126,6 +126,8 @@ class Counter:
         """Return whether one is left after the counter has counted down by one."""
         is_small = Signal(name=f"{self.name}_is_small")
         two, three, four = (Signal(name=f"{self.name}_is_{k}") for k in (2, 3, 4))
+        # Two are left if `value - less - pending` is 2. So `value` is 2, 3 or 4, and no subtraction
+        # comes before the comparison.
         m.d.comb += is_small.eq(~self.value[3:].any())
         for k, each in enumerate((two, three, four), 2):
             m.d.comb += each.eq(is_small & (self.value[:3] == k))

@@ -26,6 +26,9 @@ def exceeds(value: Value, limit: int) -> Value:
     """Return whether an unsigned number is above a constant, as plain logic: no carry chain."""
     if limit >> len(value):
         return Const(0, 1)
+    # From the lowest bit on: `result` says whether the bits so far are above those of the limit.
+    # Where the limit has a 1, a number must have a 1 to stay above; where it has a 0, a 1 is
+    # enough.
     result: Value = Const(0, 1)
     start = 0
     while start < len(value):

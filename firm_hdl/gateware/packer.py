@@ -98,6 +98,7 @@ class Packer(wiring.Component):
         last_bytes = Signal(range(bus + 1))
         sent = Mux(words.last | words.empty, end, end - 1)
         done = ring.beat(sent if program.may_end_without_bytes else end)
+        # Bytes in the last beat: the lane after the last byte, in which 0 stands for a full beat.
         full = Cat(ring.lane(map_end), Const(0, 1)) - 1
         with m.If(takes):
             m.d.sync += [

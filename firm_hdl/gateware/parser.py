@@ -191,6 +191,7 @@ class VerdictQueue(wiring.Component):
                 first.eq(Mux(second.ends, Value.cast(second), Value.cast(came))),
                 second.eq(Mux(third.ends, Value.cast(third), Value.cast(came))),
             ]
+            # Then `came` goes to `first`, and must not be kept twice.
             with m.If(~second.ends):
                 m.d.sync += second.ends.eq(0)
         with m.Elif(~second.ends):

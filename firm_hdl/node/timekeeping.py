@@ -34,6 +34,9 @@ MOST_ERROR = 10.0
 """Of a clock, as a fraction. What looks like more is a time that was not set, or a host that has
 set its own."""
 
+# What a sample takes from the offset, and what of it is held to be the crystal's. With samples of
+# equal distance and no noise, an offset of 1 goes through 0.52, 0.19 and -0.02 to -0.23 and then
+# back: its swing shrinks by 0.77 per sample. Larger shares would follow the noise of the delays.
 _PROPORTIONAL, _INTEGRAL = 0.4, 0.08
 
 

@@ -189,7 +189,9 @@ class _Builder:
         if node.item.bytes > self.bus_bytes:
             self.item_loop(node, items, count)
         else:
+            # The segment ends with the length, so some step takes the rest of an earlier run here.
             self.flush()
+            # Even padding whose size is known belongs to the run: an empty run does not have it.
             align = node.item_gap.align if node.item_gap.bytes != 0 else 1
             self.add(Run(leaf=items, count=count, align=align))
             self.rest = items
@@ -212,6 +214,9 @@ class _Builder:
                 remaining -= lanes
             self.value(items, remaining * size, "always")
             return
+        # The order counts: `flush` gives the alignment of an open segment to its first step, so
+        # what `take_align` finds afterwards is that of the items, and 1 if padding is in the
+        # segment.
         self.flush()
         self.flush_rest()
         words, align = Constant(full * lanes), self.take_align()
@@ -265,8 +270,15 @@ class _Builder:
 
     def joined(self, items: Sequence[Item], rest: int) -> tuple[Item, ...] | None:
         """Return items whose first step takes a rest; `None` if this step cannot."""
+        # The body of a loop over strings. Its first step is reached from before the loop, where the
+        # rest has 0 items, and from the element before, whose rest it takes:
+        #
+        #   --> | rest, then length | words of the run | --+
+        #       ^------------------------------------------+
         first: Item | None = items[0]
         match first:
+            # Its count is constant, as a length would be in a step before it. So it has an element,
+            # and that element takes the rest.
             case Loop():
                 body = self.joined(first.body, rest)
                 first = None if body is None else replace(first, body=body)
@@ -294,7 +306,7 @@ class _Builder:
         """Cut the segment into steps."""
         if not self.segment:
             return
-        is_first = self.open == [[]]
+        is_first = self.open == [[]]  # The segment starts the packet.
         # A short last step would cost a cycle in each element, before a loop, or in short packets.
         may_be_wide = len(self.open) > 1 or before_loop or not self.has_lengths
         if is_first:

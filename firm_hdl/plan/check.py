@@ -110,7 +110,7 @@ def _step(plan: Plan, step: Step) -> Iterator[str]:
         return
     if step.align not in (1, 2, 4, 8):
         yield f"alignment to {step.align}"
-    words = 2
+    words = 2  # The converters move two words a cycle; a rest is one of them.
     if step.rest is not None:
         words = 1
         if step.rest not in range(len(plan.leaves)) or plan.leaves[step.rest].kind != "items":
@@ -218,6 +218,7 @@ def _joint(plan: Plan, before: Item | None, item: Item | None) -> Iterator[str]:
     first = item.slices[:1] if isinstance(item, Step) else ()
     cut = [part for part in last if isinstance(part, Part) and not part.completes]
     goes_on = [part for part in first if isinstance(part, Part) and part.first]
+    # The next part goes on at the byte where this one stopped; only its size is free.
     wanted = [replace(part, first=part.first + part.bytes) for part in cut]
     if wanted != [replace(part, bytes=cut[0].bytes if cut else 0) for part in goes_on]:
         yield "the parts of a transfer do not join"
@@ -303,7 +304,11 @@ def _rests(plan: Plan) -> Iterator[str]:
             if rest not in {*left, NO_REST}:
                 problems[f"step {index}: {plan.leaves[rest]} has no rest here"] = None
             if isinstance(item, Loop):
+                # A body starts after what comes before the loop, or after another element. Every
+                # step takes the rests that it finds. So the last item alone decides what an element
+                # leaves, and one pass over the body is enough.
                 after = follow(item.body, index, left | _left(item.body[-1]))
+                # A loop that a length counts may have no element.
                 left = left | after if isinstance(item.count, Length) else after
                 continue
             for run in left - {NO_REST, rest}:

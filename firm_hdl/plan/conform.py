@@ -118,7 +118,10 @@ def _compare(rows: Sequence[_Row], wanted: Sequence[_Row]) -> Iterator[str]:
 
 
 def _charges(plan: Plan, layout: Layout) -> Iterator[str]:
-    """Compare what lengths claim with the layout: paths tell which length is inside which."""
+    """Compare what lengths claim with the layout: paths tell which length is inside which.
+
+    The claims are derived anew, and not by `limits.charges_of`: a mistake there must show here.
+    """
     nodes = {
         node.path: node
         for node in walk(layout.nodes)

@@ -15,12 +15,13 @@ def step_sizes(
 ) -> list[int]:
     """Return step sizes for a segment.
 
-    A step takes up to a bus word. The last step may take two words if it takes no rest of a run. A
-    stream has one transfer per cycle, so a step ends between two transfers of a leaf.
+    A step takes up to a bus word. The last step may take two words if it takes no rest of a run:
+    the converters move two words a cycle, and a rest is one of them. A stream has one transfer per
+    cycle, so a step ends between two transfers of a leaf.
 
     * `segment`: with at least one slice; all transfers in it are whole.
-    * `at_start`: whether the segment starts a packet. It is then cut at bus words, which needs no
-      rotator.
+    * `at_start`: whether the segment starts a packet. A packet starts in lane 0 (rule 7 of
+      docs/reference/streams.md), so steps that are cut at bus words need no rotator.
     * `may_be_wide`: whether a last step may take two words.
     * `has_rest`: whether the first step takes the rest of a run.
     """
@@ -28,9 +29,11 @@ def step_sizes(
     for piece in _pieces(segment):
         total = size_of(piece)
         if sizes or not at_start:
+            # With more than two words, there is a step before the last one, and it takes the rest.
             is_wide = may_be_wide and (bool(sizes) or not has_rest or total > 2 * bus_bytes)
             sizes += cut(piece, bus_bytes, 2 * bus_bytes if is_wide else bus_bytes)
             continue
+        # A trigger alone has no bytes, but a step.
         sizes = [min(bus_bytes, total - at) for at in range(0, total, bus_bytes)] or [0]
         if len(sizes) > 1 and may_be_wide:
             sizes[-2:] = [sizes[-2] + sizes[-1]]
@@ -61,6 +64,7 @@ def cut(segment: list[Slice], bus_bytes: int, last_bytes: int) -> list[int]:
     while total - start > last_bytes:
         # Steps between this one and the last one.
         inner = -(-(total - start - last_bytes) // bus_bytes) - 1
+        # If this step ended earlier, full steps after it would not reach the last one any more.
         lowest = max(total - last_bytes - inner * bus_bytes, start + 1)
         cuts = [at for at in range(lowest, start + bus_bytes + 1) if at in borders]
         end = cuts[-1] if cuts else start + bus_bytes

@@ -42,6 +42,8 @@ def _ways(
 
     * `after`: what may follow the last item.
     """
+    # What follows the item at a place, once it is done. After a step that begins a run or a loop,
+    # it is what follows that item, in case there is no element and no word before the rest.
     ends = [NEXT] * (len(items) - 1) + [after]
     for place, (index, item) in enumerate(numbered(items, first)):
         ways = ends[place]

@@ -82,6 +82,7 @@ class _Walk:
         self.problems[f"step {index}: {problem}"] = None
 
     def packet(self) -> None:
+        # Alignment counts from the end of the encapsulation header. So a packet starts at -4 there.
         start = frozenset({(-self.plan.header_bytes % 8, 0)})
         end = self.block(self.plan.items, 0, 0, start)
         if any(pad for _, pad in end):
@@ -103,6 +104,7 @@ class _Walk:
 
     def block(self, items: Sequence[Item], first: int, level: int, places: Places) -> Places:
         """Follow items inside `level` loops; return the places after them."""
+        # A loop and the first loop in its body have one number, so the level is needed as well.
         key = (first, level, places)
         if key not in self.known:
             for index, item in numbered(items, first):
@@ -119,6 +121,7 @@ class _Walk:
 
     def loop(self, index: int, loop: Loop, level: int, places: Places) -> Places:
         if isinstance(loop.count, Length):
+            # Places only become more, and there are 64 at most: soon another element adds none.
             for _ in range(loop.count.limit if self.limited else 1 << 32):
                 more = places | self.block(loop.body, index, level, places)
                 if more == places:
@@ -153,6 +156,7 @@ class _Walk:
             self.report(index, f"{leaf} is aligned to {align}, not {self.align_of(leaf)}")
 
     def slice(self, index: int, item: Slice, residue: int, pad: int) -> tuple[int, int]:
+        # Padding is judged at the value after it, which says how much is right.
         if isinstance(item, Pad):
             if pad + item.bytes > 7:
                 self.report(index, "8 padding bytes or more")

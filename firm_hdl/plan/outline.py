@@ -79,7 +79,8 @@ def _bytes(stretch: _Stretch, bus_bytes: int, numbers: Iterator[int]) -> Iterato
     """
     gap, remaining = stretch.gap, stretch.bytes
     if gap.bytes != 0:
-        # Padding stands only before a value that needs the alignment.
+        # Padding stands only before a value that needs the alignment. The first field of the
+        # stretch is such a value, so the stretch has at least `align` bytes.
         number = PRIMITIVES["ros2"][f"uint{8 * gap.align}"]
         yield Scalar(path=_path(numbers), gap=gap, type=number)
         gap, remaining = NO_GAP, remaining - gap.align
@@ -135,6 +136,8 @@ def _fixed_loop(node: LoopNode, times: int) -> _Stretch | None:
             assert fixed.gap.bytes is not None
             found.bytes += fixed.gap.bytes + fixed.bytes
     assert found is not None
+    # A gap of the layout holds for every element. So the gap before the first value of the body is
+    # also the one between two elements.
     between = 0 if times == 1 else found.gap.bytes
     if between is None:
         return None

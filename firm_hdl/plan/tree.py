@@ -10,7 +10,11 @@ end of the step before the run or loop.
 
 Only the last bus word of a run that a length counts may be short. This word is the *rest*. The step
 after the run takes the rest together with its own bytes, so that the rest costs no cycle. A run of
-at most one word is only a rest.
+at most one word is only a rest. A string of 20 characters on a bus of 8 bytes, and a field after
+it::
+
+    step   | length | word   | word    | field
+    items  |        | 0 .. 7 | 8 .. 15 | 16 .. 19 and the NUL: the rest
 
 Steps and runs are numbered from 0 in the order of the tree, which is that of the wire.
 """
@@ -399,6 +403,8 @@ class Plan:
 
     def word_count(self, run: Run) -> int:
         """Return the largest count that fits in one word of a run, its NUL included."""
+        # The NUL needs no lane: a deserializer only compares it, and a serializer writes it as a
+        # byte of padding.
         return self.leaves[run.leaf].lanes + run.count.nul
 
     @cached_property

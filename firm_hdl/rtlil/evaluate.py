@@ -101,6 +101,7 @@ def _unary(kind: str, spec: Spec, value: int | None, width: int, *, signed: bool
 def _binary(kind: str, a: int, b: int, size: int) -> int:
     if kind in ("$divfloor", "$modfloor"):
         return 0 if b == 0 else a // b if kind == "$divfloor" else a % b
+    # No value of Amaranth has more than 65,535 bits, but a distance can be any number.
     if kind == "$shl":
         return a << min(b, 1 << 16)
     if kind in _SHIFTS:

@@ -72,6 +72,7 @@ class _Simplifier:
             self._changed = False
             items = tuple(self._pass(items))
         connections = [(target, self._resolve(value)) for target, value in self._module.connections]
+        # A wire whose value is known has no driver any more. If it has a name, the name stays.
         for name in self._known:
             if not name.startswith("$"):
                 whole = Slice(name, 0, self._module.wires[name].width, True)
@@ -276,7 +277,10 @@ def _overlaid(value: Spec, statement: Assign) -> Spec:
 
 
 def _split(selector: Spec) -> tuple[dict[int, str], Spec, list[int]]:
-    """Split a selector into constant bits by pattern position, other bits, and their positions."""
+    """Split a selector into constant bits by pattern position, other bits, and their positions.
+
+    Position 0 is that of the first digit of a pattern, and so of the highest bit of the selector.
+    """
     fixed: dict[int, str] = {}
     kept: list[Spec] = []
     positions: list[int] = []

@@ -87,7 +87,10 @@ def convert_fragment(fragment: Fragment | _ir.Design, ports: Any, *, name: str) 
 
 
 def _purposes(fragment: Fragment, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the paths of modules, and what their docstrings say about them."""
+    """Yield the paths of modules, and what their docstrings say about them.
+
+    So the docstring of a component is text of the generated files, and a wave form in it, too.
+    """
     for origin in (fragment.origins or ())[:1]:
         text = inspect.getdoc(type(origin)) or ""
         if text and not type(origin).__module__.startswith("amaranth."):

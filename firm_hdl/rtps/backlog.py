@@ -126,6 +126,8 @@ class Backlog:
             part = new.payload[start : start + new.fragment_bytes]
             if index in begun.parts or not part:
                 continue
+            # A fragment far ahead costs the map of those before it, too. Without that, fragments of
+            # a byte each would take memory that no budget knows of.
             size = len(part) + max(0, index - 1 - len(begun.came))
             if not self._room(size, number):
                 self.drop(number)
@@ -195,6 +197,8 @@ class Backlog:
     def _room(self, size: int, number: int) -> bool:
         """Take memory for a sample, perhaps from those of this writer that count less."""
         while not self._budget.take(self, size):
+            # In order, what counts less than this sample is above it; else, below it. Nothing that
+            # counts more gives way.
             least = self._least() if self else number
             if least == number or (least < number) is self._in_order:
                 return False

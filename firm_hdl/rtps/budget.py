@@ -58,6 +58,8 @@ class Budget:
 
     def _largest(self, holder: Holder, size: int) -> Holder | None:
         """Return who has most of the peer that has most, if that is more than `holder` asks for."""
+        # First the peer, then one of its holders: so many small ones do not hide that a peer has
+        # most.
         mine = self._of_peer.get(holder.prefix, 0) + size
         peer = max(self._of_peer, key=self._of_peer.__getitem__, default=holder.prefix)
         if self._of_peer.get(peer, 0) <= mine:

@@ -311,6 +311,8 @@ class Core:
     def _take(self, received: Received, host: str | None, now: float) -> None:
         """Bring a submessage to the endpoints that it is for."""
         submessage, stamp = received.submessage, received.timestamp
+        # Only what becomes an event, or leads to one, is refused: answers of readers still free the
+        # histories of writers.
         if isinstance(submessage, Data | DataFrag) and self._is_crowded:
             # A reliable writer sends it again.
             self.counters["refused"] += 1

@@ -156,6 +156,7 @@ class Reader:
             return
         if number in proxy.backlog:
             return
+        # Before the first heartbeat, nobody knows whether earlier ones are to come: samples wait.
         is_next = number == proxy.next and proxy.synced
         if number >= proxy.next + _WINDOW:
             self._counters["refused"] += 1
@@ -313,6 +314,7 @@ class Reader:
 
     def _answer(self, proxy: _Proxy, now: float) -> None:
         """Acknowledge what came, and ask for what is missing (8.4.12.2, 8.4.14.1)."""
+        # The base acknowledges all below `next`, the bits name what is missing of the 256 behind.
         window = range(proxy.next, min(proxy.last, proxy.next + NumberSet.MAX_SIZE - 1) + 1)
         absent, partial = proxy.backlog.absent(window)
         if proxy.gaps:

@@ -154,6 +154,7 @@ class Sedp:
         self._events.append(PeerFound(peer.data))
         if not peer.data.discovery:
             return
+        # Bits of BuiltinEndpointSet_t (9.3.2), as `_BUILTIN_ENDPOINTS` has them.
         for bit, endpoint, entity in (
             (3, self.publications, PUBLICATIONS_READER),
             (5, self.subscriptions, SUBSCRIPTIONS_READER),

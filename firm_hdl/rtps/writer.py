@@ -397,6 +397,9 @@ class Writer:
         for number, change in self._changes.items():
             if self._durable and not change.passing:
                 continue
+            # Numbers ascend. So the reader that has acknowledged least lacks all that is for
+            # everybody from here on; only samples for some readers could be done with, and they
+            # come in turn.
             if number > lowest and change.to is None:
                 break
             if not any(proxy.lacks(number, change) for proxy in self._proxies.values()):
@@ -422,6 +425,8 @@ class Writer:
 
     def _heartbeat(self, proxy: _Proxy, final: bool) -> Heartbeat:
         self._count = (self._count + 1) & 0x7FFF_FFFF
+        # A sample for others may have left the history. If the reader has lost its GAP, it has to
+        # ask for it, and would count it as lost if the first number were above.
         lowest = min((next(iter(self._changes), self.last + 1), *proxy.skipped[:1]))
         return Heartbeat(
             reader=proxy.guid.entity,

@@ -190,6 +190,8 @@ class Cells:
         a, b = (trim(cell.ports[port], width) for port in "AB")
         if operator == "+" and values.constant(a) is not None:
             a, b = b, a
+        # numeric_std converts a number to the width of the other operand. One that does not fit
+        # would be cut, with a warning in each simulation.
         value = values.constant(b, signed=signed)
         if value is not None and abs(value) < 1 << min(width, NATURAL_BITS):
             if value < 0:
@@ -229,6 +231,7 @@ class Cells:
     def _product(self, cell: Cell, width: int, signed: bool) -> Expression:
         values = self._values
         a, b = (trim(cell.ports[port], width) for port in "AB")
+        # A product of numeric_std has as many bits as both operands together.
         natural = max(spec_width(a), 1) + max(spec_width(b), 1)
         if signed and width <= natural:
             product = call("unsigned", infix("*", values.signed(a), values.signed(b)))
@@ -248,6 +251,7 @@ class Cells:
         function = "floor_div" if cell.kind == "$divfloor" else "floor_mod"
         if signed:
             inner = call(function, self._signed(a, a_bits), self._signed(b, b_bits))
+            # The smallest number divided by -1 needs a bit more.
             natural = max(a_bits, b_bits) + 1 if function == "floor_div" else b_bits
             text = call("unsigned", inner)
             if width > natural:

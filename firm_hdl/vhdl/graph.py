@@ -263,6 +263,7 @@ def _narrow(graph: Graph) -> Graph:
         if cell.kind in INLINE and output(cell).startswith("$")
     }
     width = dict(graph.width)
+    # By wire: one more than the highest bit that is read. It only grows, so the work has an end.
     needed: Counter[str] = Counter()
     pending: list[str] = []
 
@@ -364,6 +365,8 @@ def _pair_registers(graph: Graph) -> Graph:
     by_target = {target_of(process): process for process in graph.processes}
     registers = {output(cell): cell for cell in graph.cells if cell.kind in ("$dff", "$adff")}
     next_state: dict[str, Process] = {}
+    # A next value that nothing but its register reads needs no signal: its process is written as a
+    # part of the clocked one.
     for register, cell in registers.items():
         chunk = only(cell.ports["D"])
         if (
@@ -394,6 +397,8 @@ def uses_with_registers(graph: Graph) -> Iterator[Use]:
 
 def _fold(graph: Graph, is_foldable: Callable[[Cell, int], bool]) -> Graph:
     """Find the generated wires whose expression can be written where they are read."""
+    # What is read in part, or where only a name may stand, keeps its signal: neither VHDL nor
+    # Verilog has slices of expressions.
     count: Counter[str] = Counter()
     fixed: set[str] = set()
     for use in uses_with_registers(graph):

@@ -138,6 +138,7 @@ def _mode(cell: Cell, port: str, graph: Graph) -> str:
     if "inout" in directions:
         # Pads that are used in one way only tell the mode. VHDL does not connect them to `inout`.
         return "out" if "output" in directions else "in"
+    # A port of the module that goes out, and that nothing else here drives, is driven by this one.
     driven = {output(other) for other in graph.cells if other.kind in ("$dff", "$adff")}
     if directions == {"output"} and not any(
         wire.name in driven or wire.name in _sources(graph) for wire in wires

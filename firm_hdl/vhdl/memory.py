@@ -85,6 +85,8 @@ class MemoryText:
 
     def processes(self) -> Iterator[str]:
         """Yield lines for the architecture body."""
+        # One process for all write ports: of two that write a word at once, the later statement
+        # counts, and so the port with the higher number.
         if self.writes:
             clocks = dict.fromkeys(
                 self.values.logic(cell.ports["CLK"]).text for cell in self.writes

@@ -79,6 +79,12 @@ class Registers:
         return groups
 
     def register_of(self, wire: str, cell: Cell) -> Register:
+        # Amaranth's process of a register, of which only the middle remains as statements:
+        #
+        #   next = q               the default, which a clocked process has anyway
+        #   switch ...
+        #   switch rst             a synchronous reset, which becomes that of the group
+        #     case 1: next = init
         process = self.graph.next_state.get(wire)
         if process is None:
             whole = (Slice(wire, 0, spec_width(cell.ports["D"])),)

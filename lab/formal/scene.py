@@ -85,7 +85,7 @@ class Scene(Elaboratable):
     def inside(self, block: Elaboratable) -> dict[str, Any]:
         """Add a block. Return the local names of `elaborate`, of it and its parts, by class.
 
-        The name ``state`` stands for a function: whether the state machine is in
+        The name ``is_in`` stands for a function: whether the state machine is in
         one of states; without any, whether it is in any.
         """
         found: dict[str, Any] = {}
@@ -102,7 +102,7 @@ class Scene(Elaboratable):
             sys.setprofile(None)
         for names in found.values():
             if fsm := getattr(getattr(names, "m", None), "_generated", {}).get("fsm"):
-                names.state = partial(_is_in, fsm)
+                names.is_in = partial(_is_in, fsm)
         return found
 
     def was(self, value: Value, name: str) -> Signal:

@@ -72,7 +72,9 @@ class BlockFifo(wiring.Component):
             used.eq(to - at),
             memory.write_at.eq(to),
             memory.write_word.eq(self.i.payload),
-            # A word is valid when `to` has passed it. So it may be written in every cycle.
+            # A word is valid when `to` has passed it. So it may be written in every cycle. The word
+            # that is written is read only if the FIFO is empty; `fetched` stays 0 then, as
+            # :class:`BlockMemory` wants it.
             memory.writes.eq(1),
             more.eq(to != at),
             leaves.eq(~self.o.valid | self.o.ready),

@@ -125,6 +125,9 @@ class PacketFifo(Component):
         m.submodules.reader = reader = PacketReader(shape)
         put_in(m, self, writer.packets)
         put_out(m, reader.packets, self)
+        # `kept` passes a word only after the cycle in which it is written. So the reader never
+        # reads a word while it is written, as :class:`BlockMemory` wants it, but for reads whose
+        # word it ignores (`at` is `kept`).
         m.d.comb += [
             writer.abort.eq(self.abort),
             memory.write_at.eq(writer.at),

@@ -304,6 +304,14 @@ class _Verdicts:
 
     def give_statuses(self) -> None:
         """Join the parser's verdict with what the memory did, 2 cycles after it took the packet."""
+        #   cycle                     | 0         | 1            | 2     | 3
+        #   head                      | last beat |              |       |
+        #   judged beat, given        |           | of packet    |       |
+        #   memory takes it: leaves   |           | 1            |       |
+        #   is_due, code              |           |              | valid |
+        #   is_ready, judged, outcome |           |              |       | valid
+        #
+        # `unsent` counts the packet from cycle 1 on, so its status finds a place in cycle 3.
         m, gate, parsed = self.m, self.gate, self.parser.status.payload
         unsent = Signal(range(2 * STATUSES), name="unsent")
         enters, is_due, is_ready = Signal(name="enters"), Signal(name="is_due"), Signal(name="due")

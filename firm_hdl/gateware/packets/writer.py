@@ -174,7 +174,8 @@ class PacketWriter(wiring.Component):
 
     def _may_store(self, ends: Value) -> Value:
         """Return whether one more packet may be stored; `ends`: a packet that may be kept ends."""
-        # By how many packets more than `stored` there will be.
+        # By how many packets more than `stored` there will be: `stored` follows `keeps` and `begun`
+        # in the next cycle only, and a packet that ends now is kept in the next cycle.
         left = {more: self.stored < self.shape.packets - more for more in (-1, 0, 1, 2)}
         fewer, same, more = (Mux(ends, left[n + 1], left[n]) for n in (-1, 0, 1))
         return Mux(self.begun, Mux(self.keeps, same, fewer), Mux(self.keeps, more, same))

@@ -130,6 +130,8 @@ class Budget(wiring.Component):
         ]
         with m.If(subtracts):
             m.d.sync += remaining.eq(left)
+        # An outermost length that is too small to be charged begins a new budget, too. While its
+        # state waits for bytes, the budget is renewed again and again; lengths inside come later.
         with m.Elif(renewed):
             m.d.sync += remaining.eq(total)
         return m

@@ -126,6 +126,7 @@ class Buffer(wiring.Component):
             payload.eq(packets.payload),
             arrived.eq(arrived + arrives),
             at.eq(at + full),
+            # The highest bit of `used` is set only if the ring is full: `used` is its depth then.
             room.eq(~used[-1] & ~((used == ring.depth - 1) & arrives)),
         ]
         return at
@@ -155,6 +156,8 @@ class Buffer(wiring.Component):
         )
         has_second = Signal(name="has_second")
         stored = Signal(name="stored")
+        # Every cycle writes a word, but only `pushed` makes it one of the queue. So `ends_now` and
+        # `has_second` do not have to reach the enable of the memory.
         m.d.comb += [
             stored.eq(pushed != popped),
             write.addr.eq(pushed),

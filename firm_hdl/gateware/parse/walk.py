@@ -92,9 +92,8 @@ class Walk:
         self.rest = Signal(
             program.rest_bits, name="rest", attrs={REMARK: "items in the rest of the run"}
         )
-        # A NUL must be at `nul_at` in the state that takes the rest.
-        # In a state that takes a rest: first byte after the items of the rest. It has no meaning in
-        # the states before.
+        # First byte after the items of the rest, which has a meaning only in the state that takes
+        # it; and whether a NUL must be there.
         self.nul_at, self.has_nul = ring.position("nul_at"), Signal(name="has_nul")
         # The state is that of a length again, which claimed too much: it is left at once. Constants
         # of the state are those of the state after it.
@@ -107,17 +106,16 @@ class Walk:
             if program.aligns:
                 self.phase = Signal(3, name="phase", init=plan.header_bytes % 8)
 
-        # The length is looked up at a register, so the read of the table starts with the cycle.
-        # The state's length, decoded.
+        # The state's length, decoded. It is looked up at a register, so the read of the table
+        # starts with the cycle.
         self.length = length_of_step(m, program, flow, Value.cast(arrival.beat), self.last_at)
-        self.not_last_at = named(m, "not_last_at", ~self.last_at, "-1 - last_at")  # `-1 - last_at`.
-        # Bytes in the buffer from `step_end` on; negative if bytes of the state are missing.
-        # First byte after the state's map or word.
+        self.not_last_at = named(m, "not_last_at", ~self.last_at, "-1 - last_at")
+        # First byte after the state's map or word; bytes in the buffer from there on, negative if
+        # bytes of the state are missing.
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
         self.present = Signal(name="present")  # All bytes of the state are in the buffer.
-        # The next state is an exit of this one, always or because of the length; else it is its
-        # body.
-        # The next state is an exit of this one, whatever the length is.
+        # The next state is an exit of this one: whatever the length is; always, or because of the
+        # length. Else it is its body.
         self.exits_always, self.done = Signal(name="exits_always"), Signal(name="done")
         # The message ends with this state, and the packet has ended as well.
         self.ends_message, self.ends_packet = (
@@ -213,6 +211,8 @@ class Walk:
             aborts=aborts,
         )
         if revisit is not None:
+            # A length that is charged is large, so the state after it is its body, and tells which
+            # length it was. The flag sends the state of the length to its exit.
             states = self.program.states
             begun = {s.body.to: s.number for s in states if s.length is not None and s.body}
             m.d.sync += self.revisits.eq(revisit | (self.revisits & ~issue))

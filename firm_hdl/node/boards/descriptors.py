@@ -82,6 +82,7 @@ class Ring:
         at, following = self._start + self._next * BYTES, (self._next + 1) % self._count
         address = self._memory.address + self.next_buffer
         _FORM.pack_into(self._memory.data, at, self._address(following), address, control, 0)
+        # The DMA also writes STATUS into it: `completed` takes the line back before each look.
         self._memory.to_device(at, BYTES, is_written=False)
         self._armed += 1
 

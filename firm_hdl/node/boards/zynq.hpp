@@ -368,10 +368,13 @@ class Zynq {
   void transfer(unsigned at, std::size_t offset, std::uint32_t size) {
     const std::uint64_t address = memory_.address() + offset;
     registers_.write(at + kAddress, static_cast<std::uint32_t>(address));
-    if (const auto high = static_cast<std::uint32_t>(address >> 32)) {
+    // Also 0, once another part of the buffer was above 4 GiB: the register keeps its value.
+    const auto high = static_cast<std::uint32_t>(address >> 32);
+    if (high || has_high_addresses_) {
       registers_.write(at + kAddress + 4, high);
       if (registers_.read(at + kAddress + 4) != high)
         throw Error("the DMA has too few bits for the address of the buffer");
+      has_high_addresses_ = true;
     }
     detail::barrier();
     registers_.write(at + kLength, size);
@@ -439,7 +442,7 @@ class Zynq {
   Memory memory_;
   std::uint32_t most_;
   std::size_t part_;
-  bool is_sending_ = false, starts_ = true, is_synced_ = false;
+  bool is_sending_ = false, starts_ = true, is_synced_ = false, has_high_addresses_ = false;
   unsigned written_ = 1;
   std::uint16_t sequence_ = 0, sequence_under_way_ = 0, expected_ = 0;
   std::uint32_t tag_ = 0;

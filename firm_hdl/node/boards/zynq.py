@@ -120,7 +120,9 @@ class ZynqBoard(Board):
         self._written = 0
         # With a scatter-gather engine. A frame that is split was longer than a buffer.
         self._rings: dict[Channel, descriptors.Ring] = {}
-        self._has_high_addresses = self._is_split = False
+        self._is_split = False
+        # Whether the upper halves of addresses are written.
+        self._has_high_addresses = False
 
     def open(self) -> None:
         self.close()
@@ -129,6 +131,8 @@ class ZynqBoard(Board):
         self._sends = self._has_stopped = self._is_split = False
         self._rings = {}
         self._opened = self._devices(*self._names)
+        # PG021 has this order: pointers to descriptors while a channel is halted, then RS, then
+        # what begins a transfer, which is a tail or a length.
         try:
             registers, buffer = self._opened
             self._check_sizes(registers, buffer)
@@ -370,10 +374,12 @@ class ZynqBoard(Board):
         registers, buffer = self._there()
         address, at = buffer.address + start, _AT[channel]
         registers.write(at + _ADDRESS, address & 0xFFFF_FFFF)
-        if high := address >> 32:
+        # Also 0, once another part of the buffer was above 4 GiB: the register keeps its value.
+        if (high := address >> 32) or self._has_high_addresses:
             registers.write(at + _ADDRESS_MSB, high)
             if registers.read(at + _ADDRESS_MSB) != high:
                 raise _too_few_bits(address)
+            self._has_high_addresses = True
         registers.write(at + _LENGTH, size)
 
 

@@ -117,6 +117,7 @@ class Arrivals:
         was_reset = False
         with suppress(ValueError):
             was_reset = is_set and ControlResponse.decode(packet).seconds < _RESET_SECONDS
+        # Without a sign before its request, an answer decides nothing. But it can be the sign.
         if self._new is None or asked.at < self.suspected_at:
             expected = self.receiver.expected
             if ahead < 0 or was_reset:
@@ -127,10 +128,13 @@ class Arrivals:
             return None
         new, self._new, self._late = self._new, None, 0
         messages, self._new_messages = self._new_messages, []
+        # Only late numbers were the sign. If the answer is late as well, but not by much, the
+        # sequence is that of before, and one of its numbers was believed that was damaged.
         if not (was_reset or self._new_starts or ahead < -LATE_MESSAGES):
             if ahead < 0:
                 self.receiver.go_back(header.sequence)
             return None
+        # The old sequence goes on: the network had repeated a frame, or delayed it.
         if ahead >= 0 and not was_reset:
             return None
         self.receiver.take_back()

@@ -52,8 +52,8 @@ class BoardSide:
         self._before: Session | None = None
         self._restarts = 0
         self._retry = Retry(*RETRY_SECONDS)
-        # All counters of losses were read after `finish`.
-        # The board is being opened; this was tried once; it was ready once.
+        # The board is being opened; this was tried once; it was ready once; all counters of losses
+        # were read after `finish`.
         self.is_opening = self.was_tried = self.was_ready = self.has_read_last = False
         self._is_ending = False
         # When a restart may be reported again, and whether the last one was.

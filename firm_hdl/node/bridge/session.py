@@ -185,6 +185,7 @@ class Session:
     def _next(self, now: float) -> tuple[ControlRequest | None, bool]:
         """Return the next request, and whether its answer compares the clocks."""
         if not self.is_ready:
+            # The two halves of the fingerprint; see `IDENTITY`.
             unknown = {1, 2} - self._identity.keys()
             return _read(min(unknown, default=self._requests_register)), False
         if self._is_finishing:
@@ -193,6 +194,7 @@ class Session:
             request, self._clock_request = self._clock_request, None
             return request, False
         if now >= self._next_sample or self._is_unanswered:
+            # Every answer has the time of the node, whatever was asked for.
             self._next_sample = now + self._sample_seconds
             return _read(0), True
         if now >= self._next_round and not self._todo:

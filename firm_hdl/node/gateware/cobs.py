@@ -122,7 +122,13 @@ class CobsDecoder(wiring.Component):
         m.submodules.slice = out = StreamSlice(self.o.payload.shape())
         byte = self.i.payload
         moves = Signal()
-        # Bytes of the block that are missing; the frame has begun; a 0 follows the block.
+        # Bytes of the block that are missing; the frame has begun; a 0 follows the block. A block's
+        # 0 is given out in place of the next code, as the last block of a frame stands for none:
+        # whether it was the last is known by then.
+        #
+        #     i       03 11 22 02 33 00
+        #     left    0  2  1  0  1  0
+        #     out        11 22 00 33 ends
         left = Signal(8)
         inside = Signal()
         zero = Signal()

@@ -106,6 +106,8 @@ class AxiDmaLink(wiring.Component):
         ]
         with m.If(moves):
             m.d.sync += [inside.eq(~frames.payload.last), was_dropped.eq(drops)]
+        # A reset loses the buffer with the first beats of a frame; its rest would look like a frame
+        # of its own in the next buffer.
         with m.If(~runs):
             m.d.sync += [has_host.eq(0), was_dropped.eq(1)]
         with m.Elif(receiver.passes):

@@ -100,6 +100,8 @@ class EthernetLink(wiring.Component):
         if link.kind == "rtps":
             word_bytes = _WORD_BYTES
             rate = self.description.clock_hz / _GIGABIT_HZ if is_apart else 1.0
+            # Clocks of two crystals differ a little: a participant that is only just fast enough
+            # counts as too slow.
             stores = rate * _WORD_BYTES < 1.02
             ahead_bytes = max(0, round(_AHEAD_BYTES * min(1.0, rate)) - _PAUSE_BYTES)
         is_split = not stores and fragment_bytes > 0

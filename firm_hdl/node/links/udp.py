@@ -99,6 +99,8 @@ class UdpLink(wiring.Component):
         port = Signal(16)
         new_address = Signal(32)
         new_port = Signal(16)
+        # Where a datagram comes from is noted with its first word and counts once a whole message
+        # has passed its checks: a stray datagram does not turn the replies away from the host.
         with m.If(receiver.begins):
             m.d.sync += [new_address.eq(came.ip_address), new_port.eq(came.src_port)]
         with m.If(receiver.passes):
@@ -113,7 +115,12 @@ class UdpLink(wiring.Component):
         m.submodules.width = width = PacketWidth(self.bus_bytes, words)
         m.submodules.fragmenter = fragments = Fragmenter(words, self.link.datagram_bytes)
         frames = fragments.frames
-        # The host of a datagram does not change between its first and its last word.
+        # The host of a datagram does not change between its first and its last word: it is noted in
+        # the cycle before the first word moves.
+        #
+        #     frames     A0   A0   A1   A2(last)  B0   B0
+        #     inside     0    1    1    1         0    1
+        #     ready      0    1    1    1         0    1
         inside = Signal()
         sends = Signal()
         drops = Signal()

@@ -180,6 +180,8 @@ class Assembler(wiring.Component):
             ask.has_room.eq(ask.sample_bytes <= limit),
             is_this.eq(is_valid & is_row & is_number),
             ask.holds.eq(is_this & ~is_old),
+            # A sample of another writer that is still coming keeps the place. One of the same
+            # writer gives it up: numbers go up, so what was begun of it will not be finished.
             begins.eq((ask.first == 1) & (~is_valid | is_old | (is_row & ~is_number))),
         ]
         goes_on = is_this & is_same & (ask.first <= held.next)
@@ -195,6 +197,11 @@ class Assembler(wiring.Component):
         address_bits = ceil_log2(bytes_of(self.parts))
         memory = BlockMemory(m, 8, 1 << address_bits)
         place = Signal(address_bits)
+        # Fragments that came before are taken and counted, but not written: only `inside` moves.
+        #
+        #   fragment      | 1 ........ | 2 ........ | 3 ....
+        #   now.next      | 2          | 2          | 3            (1 came before)
+        #   at            | stays      | counts     | counts
         m.d.comb += [
             place.eq(Array(each.base for each in self.parts)[reader] | at[:address_bits]),
             memory.write_at.eq(place),

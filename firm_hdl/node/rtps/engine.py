@@ -140,6 +140,19 @@ class Engine(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
+        # All states lead to `IDLE` again:
+        #
+        #   EVENT    -> FIND_PEER | PLACE -> PLACED -> BUILTIN | FIND -> FOUND -> by kind -> DONE
+        #   SECOND
+        #   INTAKE  <-> ACKNOWLEDGED -> FREED
+        #   ANNOUNCE -> datagram
+        #   ROW      -> ROW_READ -> ROW_STATE -> ROW_LOWER -> WRITES | LISTENS -> STORE -> NEXT
+        #   WRITES   -> REPAIR | FETCH -> FETCHED -> FOUND_SAMPLE (-> IDENTITY ..) -> datagram
+        #   LISTENS  -> COUNT -> datagram
+        #   datagram =  PEER -> PEER_READ -> WAY -> JOB -> SEND -> SENDING -> STORE
+        #
+        # An announced endpoint goes through `FIND` twice: for the writer of SEDP, whose sample it
+        # is, and for itself (`second`), which leads from `FOUND` to `MATCH` and `MATCHED`.
         m = Module()
         s = State(m, self)
         compared = compare(m, s)
@@ -147,6 +160,8 @@ class Engine(wiring.Component):
         with m.FSM():
             start(m, s)
             with m.State("IDLE"):
+                # After an event, `turn` is 0 for one cycle, in which something else is chosen. So a
+                # flood of datagrams cannot keep the engine from its other work.
                 m.d.sync += [s.second.eq(0), s.turn.eq(1), s.in_event.eq(0)]
                 s.begin_scan(m)
                 with m.If(self.events.valid & s.turn):
@@ -159,6 +174,8 @@ class Engine(wiring.Component):
                     m.next = "SECOND"
                 with m.Elif(s.multicast_due | (s.static != 0) | s.due.any()):
                     m.next = "ANNOUNCE"
+                # A message may take the place of an older one. So it has to wait until all readers
+                # were sent those before (`quiet`).
                 with m.Elif(self.histories.waits & s.quiet):
                     m.next = "INTAKE"
                 with m.Elif(is_builtin & ~s.live.bit_select(s.sweep[2:], 1)):
@@ -212,7 +229,8 @@ def _events(m: Module, s: State) -> None:
             s.kill(m, s.peer)
             m.next = "DONE"
         with m.Else():
-            # Endpoints of SEDP have their rows, and all others those behind.
+            # Endpoints of SEDP have their rows, and all others those behind. The upper two bits of
+            # an entity's kind say that it is one of the standard's own (table 9.1).
             is_builtin = key[30:] == 3
             m.d.sync += s.at.eq(Mux(is_builtin, Cat(Const(0, 2), s.peer), s.engine.first_row))
             m.next = "FIND"
@@ -236,13 +254,15 @@ def _sweep(m: Module, s: State) -> None:
     with m.State("ROW_READ"):
         m.d.sync += Value.cast(row).eq(s.rows_memory.word)
         m.next = "ROW_STATE"
-        # Behind a new message, only those wait whom it is for.
+        # Behind a new message, only those wait whom it is for. The bits 0 and 1 of a row are
+        # `valid` and `writes`.
         is_passed = s.fresh & ~s.rows_memory.word[1]
         with m.If(~s.rows_memory.word[0] | is_passed):
             m.next = "NEXT"
         with m.If(s.rows_memory.word[0] & (s.row_at > s.seen)):
             m.d.sync += s.seen.eq(s.row_at)
     with m.State("ROW_STATE"):
+        # Sample n of a writer of SEDP announces our endpoint n; the graph has one sample.
         counts = [len(s.engine.writers), len(s.engine.readers), 1]
         is_fixed = row.local < FIXED_WRITERS
         m.d.sync += [
@@ -250,8 +270,9 @@ def _sweep(m: Module, s: State) -> None:
             s.gone.eq(Mux(is_fixed, 0, s.engine.histories.state.gone)),
         ]
         m.next = "ROW_LOWER"
+        # A row outlives its peer until a sweep comes to it; `kill` waits for that.
         with m.If(~s.live.bit_select(row.peer, 1)):
-            m.d.sync += row.valid.eq(0)
+            m.d.sync += [row.valid.eq(0), s.has_room.eq(1)]
             m.next = "STORE"
     with m.State("ROW_LOWER"):
         m.d.sync += s.lower.eq(Mux(row.first > s.gone, row.first, s.gone + 1))
@@ -285,6 +306,7 @@ def _sweep(m: Module, s: State) -> None:
                 s.tick_pass.eq(s.tick_due),
                 s.tick_due.eq(0),
             ]
+            # A sweep behind a new message passes rows over, so it clears none.
             for each in s.dying:
                 with m.If((each != 0) & ~s.fresh):
                     m.d.sync += each.eq(each - 1)
@@ -301,6 +323,8 @@ def _datagrams(m: Module, s: State) -> None:
         m.d.sync += Value.cast(peer_row).eq(s.peers_memory.word)
         m.next = "WAY"
     with m.State("WAY"):
+        # Discovery goes to the metatraffic locator of a participant, samples to the default one, or
+        # to that of the endpoint if it has named one.
         is_user = s.stores & (s.row_at >= s.engine.first_row)
         own_way = Mux(row.user.port == 0, peer_row.user.as_value(), row.user.as_value())
         m.d.sync += Cat(s.address, s.port).eq(Mux(is_user, own_way, peer_row.discovery.as_value()))

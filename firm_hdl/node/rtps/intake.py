@@ -149,6 +149,7 @@ class Intake(wiring.Component):
             for name in ("bytes", "base", "depth", "replays")
         )
         mask, number = (limit - 1)[:address], Signal(32)
+        kept = Signal(range(MOST_SAMPLES + 1))
 
         def place_of(writer: Value, number: Value) -> Value:
             return Cat(number[: ceil_log2(MOST_SAMPLES)], writer)
@@ -173,6 +174,7 @@ class Intake(wiring.Component):
                 )
             ),
             number.eq(state.last + 1),
+            kept.eq(state.last - state.gone),
             samples.write_at.eq(place_of(writer, number)),
             samples.write_word.at.eq(state.at),
             samples.write_word.bytes.eq(length),
@@ -219,13 +221,13 @@ class Intake(wiring.Component):
                     m.d.comb += self.unsent.eq(1)
                     m.next = "DISCARD"
             with m.State("ROOM"):
-                kept = Signal(range(MOST_SAMPLES + 1))
                 m.d.comb += [
-                    kept.eq(state.last - state.gone),
                     samples.read_at.eq(place_of(writer, asked.oldest)),
                     samples.reads.eq(1),
                 ]
                 m.next = "COPY"
+                # One more must fit, by number and by bytes; if not, the oldest gives way. If that
+                # one is among the last `depth`, counting the new one, readers are asked first.
                 with m.If((kept == MOST_SAMPLES) | (state.used + in_memory(length) > limit)):
                     m.next = "FORGET"
                     with m.If((state.free == 0) & (kept < depth)):
@@ -233,10 +235,12 @@ class Intake(wiring.Component):
             with m.State("ASK"):
                 m.d.comb += asked.asks.eq(1)
                 with m.If(asked.answers):
-                    m.d.sync += state.free.eq(asked.free)
+                    # A reader that comes later is not asked about those, but about later ones.
+                    m.d.sync += state.free.eq(Mux(asked.free < kept, asked.free, kept))
                     m.next = "ROOM"
                     with m.If(asked.free == 0):
                         m.next = "IDLE"
+            # `ROOM` has read the oldest sample, for its size.
             with m.State("FORGET"):
                 m.d.sync += [
                     state.gone.eq(asked.oldest),
@@ -245,6 +249,8 @@ class Intake(wiring.Component):
                 ]
                 m.next = "ROOM"
             with m.State("COPY"):
+                # `fed` closes the way behind the last beat: the next message may wait on `sent`
+                # already, while words of this one are still in the converter of widths.
                 m.d.comb += [
                     width.packets_in.valid.eq(sent.valid & ~fed),
                     sent.ready.eq(width.packets_in.ready & ~fed),

@@ -19,7 +19,13 @@ def listening(m: Module, s: State) -> None:
     """Take what a writer says.
 
     Samples of topics are taken in order, those of SEDP as they come; `request` has those behind
-    `next` that need not come.
+    `next` that need not come::
+
+        number     | 4 | 5 (next) | 6       | 7       | 8       | 9 (end)
+                   | came         | missing | came    | missing |
+        request    |   | bit 31: 0| 30: 0   | 29: 1   | 28: 0   |
+
+    When 5 and 6 have come as well, `SETTLE` moves `next` on to 8: bit 31 is always that of `next`.
     """
     event, row, assembly = s.engine.events.payload, s.row, s.engine.assembly
     number, target, ahead = event.number, s.target, s.ahead
@@ -42,7 +48,8 @@ def listening(m: Module, s: State) -> None:
         m.next = "STORE_EVENT"
 
     with m.State("GAP"):
-        # 8.3.8.4: from `number` to below `last`, and the bits from `last` on.
+        # 8.3.8.4: from `number` to below `last`, and the bits from `last` on. A GAP that begins
+        # behind `next` is not kept: it is sent again when these numbers are asked for.
         m.d.sync += target.eq(event.last)
         m.next = "STORE_EVENT"
         with m.If(row.reliable & (ahead <= 0) & (s.last_ahead >= 0)):
@@ -68,6 +75,8 @@ def listening(m: Module, s: State) -> None:
             m.next = "IDLE"
         with m.Elif(takes & is_busy & row.reliable):
             m.d.sync += [s.accepts.eq(0), row.ask.eq(row.ask | (row.timer == 0))]
+        # Announcements in fragments are not read. They count as come, or they would be asked for
+        # again in vain.
         with m.Elif(takes & is_sedp):
             m.d.sync += row.request.eq(row.request | bit)
             m.next = "SETTLE"
@@ -170,6 +179,8 @@ def listens(m: Module, s: State) -> None:
             s.to.eq(asked),
             s.bits.eq(0),
             s.bitmap.eq(0),
+            # Without Final, the writer has to answer with a HEARTBEAT (8.3.8.1), which says where
+            # its samples begin.
             s.is_final.eq(row.synced),
         ]
         m.next = "NEXT"
@@ -214,8 +225,8 @@ def listens(m: Module, s: State) -> None:
                 m.d.sync += row.ask.eq(row.ask | (row.reliable & (lacks | ~row.synced)))
 
     with m.State("COUNT"):
-        # `_to` samples that are missing; or of the fragments that make up `_to` bytes, those
-        # that one word can name.
+        # `to` samples that are missing; or of the fragments that make up `to` bytes, those
+        # that one word can name. A bit per cycle is added on top: no size is divided.
         rest, is_part = s.to, s.job == Job.NACK_FRAG
         step = Mux(is_part, assembly.held.fragment_bytes, 1)
         with m.If((rest == 0) | s.bits[5]):

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from amaranth.hdl import Module, Mux, Signal, Value
 
+from firm_hdl.node.description import Link
 from firm_hdl.node.rtps.events import EventKind, raw
 from firm_hdl.node.rtps.history import MOST_SAMPLES
 from firm_hdl.node.rtps.names import digest_of
 from firm_hdl.node.rtps.state import FIXED_READERS, FIXED_WRITERS, GRAPH, State, is_for_writer
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER
 
-__all__ = ["compare", "find", "matching"]
+__all__ = ["compare", "find", "matching", "most_matches"]
+
+
+def most_matches(link: Link) -> int:
+    """Return how many endpoints of one peer are matched: half of them, if others may come."""
+    return link.matches if link.peers == 1 else (link.matches + 1) // 2
 
 
 def find(m: Module, s: State) -> None:
@@ -23,6 +29,8 @@ def find(m: Module, s: State) -> None:
         s.scan(m, s.rows_memory)
         with m.If(s.has_row & is_free & ~s.has_free):
             m.d.sync += [s.free.eq(s.row_at), s.has_free.eq(1)]
+        with m.If(s.has_row & row.valid & (row.peer == s.peer)):
+            m.d.sync += s.held.eq(s.held + 1)
         with m.If(s.has_row & (is_same | (s.row_at == s.engine.rows - 1))):
             m.d.sync += s.hit.eq(is_same)
             m.next = "FOUND"
@@ -78,12 +86,16 @@ def matching(m: Module, s: State, compared: tuple[Signal, ...]) -> None:
         m.next = "DONE"
         is_gone = event.kind == EventKind.ENDPOINT_GONE
         with m.If(is_gone & s.hit & (s.row_at >= s.engine.first_row)):
-            m.d.sync += row.valid.eq(0)
+            m.d.sync += [row.valid.eq(0), s.has_room.eq(1)]
             m.next = "STORE_EVENT"
         with m.Elif(~is_gone & ~s.hit & announced.is_endpoint & has_same & fits):
-            m.d.comb += s.engine.unsent.eq(~s.has_free)
-            with m.If(s.has_free):
+            fits_in = s.has_free & (s.held < most_matches(s.engine.description.link))
+            m.d.comb += s.engine.unsent.eq(~fits_in)
+            with m.If(~fits_in):
+                m.d.sync += s.refused.bit_select(s.peer, 1).eq(1)
+            with m.Else():
                 m.d.sync += s.row_at.eq(s.free)
+                # The sweep under way has to come to the row, and so has the next one.
                 for last in (s.top, s.seen):
                     with m.If(s.free > last):
                         m.d.sync += last.eq(s.free)
@@ -119,7 +131,10 @@ def matching(m: Module, s: State, compared: tuple[Signal, ...]) -> None:
 
 
 def compare(m: Module, s: State) -> tuple[Signal, ...]:
-    """Find the endpoint of ours that has the topic and the type of what is announced."""
+    """Find the endpoint of ours that has the topic and the type of what is announced.
+
+    Returns registers, which follow `announced` by a cycle: `FIND` takes more.
+    """
     event, announced = s.engine.events.payload, s.engine.announced
     is_writer = event.writer == raw(PUBLICATIONS_WRITER)
     has_same, local = Signal(), Signal.like(s.row.local)

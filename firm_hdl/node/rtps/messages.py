@@ -124,6 +124,14 @@ class MessageReader(wiring.Component):
         )
 
     def elaborate(self, platform: object) -> Module:
+        # A datagram goes through these states, and what is malformed to `DROP`:
+        #
+        #   START      -> HEADER -> EVENT (SOURCE) -> SUBMESSAGE
+        #   SUBMESSAGE -> LENGTH -> CHECK -> FIELDS -> HEARTBEAT | SET -> EVENT, or -> DATA
+        #   DATA       -> BEFORE_INLINE (-> PARAMETERS -> LISTED) -> CONTENT
+        #   CONTENT    -> EVENT; of SPDP, SEDP -> ENCAPSULATION -> PARAMETERS -> LISTED -> EVENT
+        #   EVENT      -> PAYLOAD -> DRAIN, or -> FRAGMENTS (-> EVENT -> DRAIN)
+        #   each       -> SKIP -> SUBMESSAGE -> START, when the datagram has no more
         m = Module()
         packets, event, fragments = self.packets, self.events.payload, self.fragments
         # The word, its first byte lowest; and as a number in the sender's order.
@@ -143,6 +151,7 @@ class MessageReader(wiring.Component):
         m.d.comb += [
             takes.eq(packets.valid & wants),
             is_first.eq(place == 0),
+            # A beat is given back when all of its bytes were taken, one by one or at once.
             behind.eq(place + step),
             packets.ready.eq(
                 flushes | (wants & (behind == Mux(packets.payload.last, packets.payload.count, 4)))
@@ -273,6 +282,7 @@ class MessageReader(wiring.Component):
                 with m.If(takes):
                     with m.Switch(kind):
                         with m.Case(InfoDestination.KIND), m.Switch(index):
+                            # Two fields of an event serve as registers of the prefix.
                             with m.Case(0):
                                 m.d.sync += event.number.eq(word)
                             with m.Case(1):
@@ -287,6 +297,8 @@ class MessageReader(wiring.Component):
                             with m.If(index == 4):
                                 emit(EventKind.SOURCE)
                         with m.Case(Data.KIND, DataFrag.KIND), m.Switch(index):
+                            # A word of two numbers. `value` has turned all four bytes, so in the
+                            # other byte order the numbers have changed places.
                             halves = Mux(is_little, value, Cat(value[16:], value[:16]))
                             with m.Case(0):
                                 m.d.sync += skip.eq(halves[16:])
@@ -307,6 +319,14 @@ class MessageReader(wiring.Component):
                             with m.Case(7):
                                 m.d.sync += event.last.eq(value)
                                 m.next = "DATA"
+                        #   word      | 0      | 1      | 2, 3   | 4    | 5    | 6
+                        #   HEARTBEAT | reader | writer | first  | last ...... | count
+                        #   GAP       | reader | writer | start  | base ...... | bits
+                        #   ACKNACK   | reader | writer | base   | bits |
+                        #   NACK_FRAG | reader | writer | number | base | bits |
+                        #
+                        # Sequence numbers have two words, the upper half first. Bits are the size
+                        # of a set, whose words follow.
                         with m.Case(Heartbeat.KIND, AckNack.KIND, Gap.KIND, NackFrag.KIND):
                             is_interval = (kind == Heartbeat.KIND) | (kind == Gap.KIND)
                             with m.Switch(index):
@@ -354,11 +374,13 @@ class MessageReader(wiring.Component):
                             emit(EventKind.NACK_FRAG)
                         with m.Default():
                             emit(EventKind.ACKNACK)
+                    # Numbers begin with 1 (8.3.5.4), but Fast DDS greets a writer with base 0.
                     with m.If((kind != AckNack.KIND) & (event.number == 0)):
                         malformed()
 
             with m.State("HEARTBEAT"):
                 m.next = "SKIP"
+                # A writer without samples has a first number that is one above the last (8.3.8.6).
                 with m.If((event.number == 0) | (event.last + 1 < event.number)):
                     malformed()
                 with m.Elif(is_known):
@@ -376,6 +398,7 @@ class MessageReader(wiring.Component):
                     malformed()
 
             with m.State("BEFORE_INLINE"):
+                # DATA has a payload or a key, not both (9.4.5.4).
                 is_wrong = (skip > left) | (~is_fragment & flag_data & flag_key)
                 m.d.comb += [wants.eq((skip != 0) & ~is_wrong), parameters.begins.eq(1)]
                 m.d.comb += self.nears.eq(skip == 0)
@@ -452,11 +475,13 @@ class MessageReader(wiring.Component):
                         m.d.sync += is_known.eq(self.knows)
                         with m.If(kind != InfoSource.KIND):
                             restart("SUBMESSAGE")
+                        # Multicast comes back to who sent it.
                         with m.If(event.source == self.own):
                             m.next = "DROP"
                     with m.If((event.kind == EventKind.SAMPLE) & self.wants & ~event.is_gone):
                         m.d.sync += self.payload_bytes.eq(left)
                         m.next = "PAYLOAD"
+                        # The payload is in the assembler; `left` is that of the last fragment.
                         with m.If(is_part):
                             m.d.comb += fragments.plays.eq(1)
                             m.d.sync += self.payload_bytes.eq(event.last)
@@ -473,6 +498,8 @@ class MessageReader(wiring.Component):
                 with m.If(takes & self.payload.payload.last):
                     m.next = "DRAIN"
 
+            # The assembler wants bytes while fragments that it has accepted are to come. If they
+            # end before, the submessage is shorter than it says.
             with m.State("FRAGMENTS"):
                 m.d.comb += [
                     wants.eq(fragments.wants & (left != 0)),

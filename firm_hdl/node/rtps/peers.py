@@ -30,7 +30,8 @@ def start(m: Module, s: State) -> None:
     """Wait from the reset to the first datagram."""
     cycles = s.cycles
     with m.State("INIT"):
-        # Memories keep their content in a reset.
+        # Memories keep their content in a reset. That of the peers counts only where `live` says
+        # so, but a row is valid by a bit of its own.
         m.d.comb += [
             s.rows_memory.writes.eq(1),
             s.rows_memory.write_at.eq(s.at),
@@ -53,7 +54,8 @@ def start(m: Module, s: State) -> None:
 def announcements(m: Module, s: State) -> None:
     """Announce this participant (8.5.3.3.1), and do what else is due once per second."""
     with m.State("SECOND"):
-        # The leases of all peers, one per cycle.
+        # The leases of all peers, one per cycle; `IDLE` has set `at` to 0. Those of free places
+        # wrap around, and are written before they count again.
         left, write = s.leases.reader(), s.leases.write
         peer = s.at[: len(s.peer)]
         m.d.comb += [
@@ -69,8 +71,11 @@ def announcements(m: Module, s: State) -> None:
                 s.multicast_due.eq(1),
                 s.static.eq(s.most_static),
                 s.due.eq(s.live),
+                s.has_room.eq(0),
                 *(young.eq(Mux(young == 0, 0, young - 1)) for young in s.young),
             ]
+            with m.If(s.has_room):
+                m.d.sync += [s.again.eq(s.again | s.refused), s.refused.eq(0)]
             m.next = "IDLE"
         with m.If(s.live.bit_select(peer, 1) & (left.data == 0)):
             s.kill(m, peer)
@@ -107,15 +112,20 @@ def participants(m: Module, s: State) -> None:
         s.scan(m, s.peers_memory)
         with m.If(s.has_row & (is_same | (peer == s.engine.peers - 1))):
             m.d.sync += s.known.eq(is_same)
+            m.next = "DONE"
             with m.If(is_same):
                 m.d.comb += s.leases.write.en.eq(1)
-            m.next = "DONE"
+                # A row that it lacked is free: its endpoints are asked for from the first one on.
+                with m.If(s.again.bit_select(peer, 1)):
+                    m.d.sync += [s.again.bit_select(peer, 1).eq(0), s.at.eq(0)]
+                    m.next = "BUILTIN"
         with m.Else():
             m.d.sync += [
                 Value.cast(peer_row).eq(s.peers_memory.word),
                 peer.eq(s.at_word),
             ]
 
+    # `known` and `peer` are what `FIND_PEER` has found for the datagram of the announcement.
     with m.State("PLACE"):
         is_free = Cat(~s.live[n] & (s.dying[n] == 0) for n in range(s.engine.peers))
         known = s.matched & s.answers
@@ -156,7 +166,11 @@ def participants(m: Module, s: State) -> None:
             m.next = "BUILTIN"
 
     with m.State("BUILTIN"):
-        # 8.5.5.1: the endpoints of SEDP are matched with those of each participant.
+        # 8.5.5.1: the endpoints of SEDP are matched with those of each participant. `at` is 0.
+        #
+        #   row of the peer | 0             | 1              | 2             | 3
+        #   its endpoint    | pubs writer   | subs writer    | pubs reader   | subs reader
+        #   ours            | pubs reader 0 | subs reader 1  | pubs writer 0 | subs writer 1
         writers = [PUBLICATIONS_WRITER, SUBSCRIPTIONS_WRITER]
         readers = [PUBLICATIONS_READER, SUBSCRIPTIONS_READER]
         place, word = s.at[:2], s.rows_memory.write_word

@@ -94,7 +94,7 @@ class State:
         self.peer, self.peer_row = Signal(range(peers)), Signal(peer_layout())
         self.known, self.accepts = Signal(), Signal()
         self.last, self.gone, self.lower = Signal(32), Signal(32), Signal(32)
-        # Whether the sample `_number` was written; and whether it is not there, or not for the row.
+        # Whether the sample `number` was written; and whether it is not there, or not for the row.
         self.is_written, self.is_gone = Signal(), Signal()
         # A scan of a memory: the address, that of the word, and whether word and row are there.
         self.at, self.at_word = Signal(range(rows + 1)), Signal(range(rows + 1))
@@ -106,6 +106,10 @@ class State:
         self.ahead, self.last_ahead = Signal(signed(33)), Signal(signed(33))
         self.is_unknown = Signal()
         self.free, self.has_free = Signal(range(rows)), Signal()
+        # How many rows the peer has; for which peers a row was missing; whether one has become free
+        # since the last second; and which peers are to announce their endpoints again.
+        self.held, self.has_room = Signal(range(rows + 1)), Signal()
+        self.refused, self.again = Signal(peers), Signal(peers)
         # Which peers there are; which are matched, have acknowledged a sample, have to be told.
         self.live, self.matched, self.due = Signal(peers), Signal(peers), Signal(peers)
         self.answers = Signal(peers)
@@ -183,6 +187,8 @@ class State:
     def _ticks(self, m: Module) -> None:
         """Note that a tick or a second is over."""
         cycles = max(2, round(self.engine.description.clock_hz / TICKS_PER_SECOND))
+        # A tick is noted, and counts in the sweep after (`tick_pass`), so that a row sees it about
+        # once.
         left, ticks = Signal(range(cycles)), Signal(range(TICKS_PER_SECOND))
         m.d.sync += left.eq(left - 1)
         with m.If(left == 0):
@@ -237,10 +243,18 @@ class State:
             self.has_word.eq(0),
             self.has_row.eq(0),
             self.has_free.eq(0),
+            self.held.eq(0),
         ]
 
     def scan(self, m: Module, memory: BlockMemory) -> None:
         """Read the next word of a memory; it comes a cycle later, and is registered then."""
+        #   cycle           | 0 | 1    | 2    | 3
+        #   at              | a | a+1  | a+2  | a+3
+        #   memory.word     |   | of a | a+1  | a+2       with `at_word` and `has_word`
+        #   row, row_at     |   |      | of a | a+1       with `has_row`; the caller registers them
+        #
+        # What is looked for is two behind `at`. A caller that has found it does not register the
+        # next word, so row and `row_at` are those that were found.
         m.d.comb += memory.reads.eq(1)
         m.d.sync += [
             self.at.eq(self.at + 1),
@@ -251,6 +265,8 @@ class State:
 
     def kill(self, m: Module, peer: Value) -> None:
         """Forget a peer. Its place is free after two whole sweeps, which clear its rows."""
+        # Two ends of sweeps are waited for, as the sweep under way may have passed some of the
+        # rows. With the place given away before, they would be taken for rows of the new peer.
         m.d.sync += [
             self.live.bit_select(peer, 1).eq(0),
             self.matched.bit_select(peer, 1).eq(0),

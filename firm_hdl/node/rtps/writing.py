@@ -29,6 +29,8 @@ def acknack(m: Module, s: State) -> None:
         # 8.4.9.2. Base 0 is how Fast DDS greets a writer.
         with m.If(event.number > row.next):
             m.d.sync += [row.next.eq(event.number), row.silent.eq(0)]
+        # A heartbeat is due if one is asked for; behind samples that are sent again, it comes
+        # anyway.
         m.d.sync += [
             row.base.eq(event.number),
             row.request.eq(Mux(event.number == 0, 0, event.bits)),
@@ -100,7 +102,8 @@ def writes(m: Module, s: State) -> None:
                 m.d.sync += row.ask.eq(row.reliable & (row.next <= s.last))
 
     with m.State("REPAIR"):
-        # `number` is that of the highest bit.
+        # `number` is that of the highest bit. A bit per cycle is passed over; one that is 1 costs a
+        # visit of its own, after which the next sweep goes on with the bits behind it.
         m.d.sync += [row.request.eq(row.request << 1), row.base.eq(row.base + 1)]
         with m.If(row.request == 0):
             m.next = "STORE"
@@ -114,18 +117,21 @@ def writes(m: Module, s: State) -> None:
                 m.d.sync += row.request.eq(0)
                 m.next = "STORE"
             with m.Elif(s.is_gone):
+                # One GAP for all that are gone. Those behind are asked for again.
                 m.d.sync += [s.from_.eq(number), s.to.eq(s.lower)]
                 m.d.sync += row.request.eq(0)
                 s.send(m, Job.GAP)
 
 
 def sampling(m: Module, s: State) -> None:
-    """Find sample `_number` of the row's writer, and order it, or a GAP in its place."""
+    """Find sample `number` of the row's writer, and order it, or a GAP in its place."""
     row, templates, sample = s.row, s.engine.templates, s.sample
     with m.State("FETCH"):
         firsts = [templates.writers, templates.readers, templates.graph]
         m.d.comb += s.engine.histories.fetches.eq(1)
         m.next = "FETCHED"
+        # Samples that never change are templates. They have no heartbeat beside them, so one is
+        # due.
         with m.If(row.local < FIXED_WRITERS):
             m.d.sync += row.ask.eq(1)
             s.send(m, constant(firsts, row.local) + s.number - 1)

@@ -11,10 +11,12 @@ from firm_hdl.plan.tree import Charge, Fixed, Leaf, Part, Plan, Run
 __all__ = ["DecodeStatus", "Decoded", "Transfer", "decode"]
 
 CHECK_CYCLES = 3
-"""Cycles for which a deserializer holds the next step, to check what a counted length claims."""
+"""Cycles for which a deserializer holds the next step, to check what a counted length claims: the
+pipeline in `firm_hdl/gateware/parse/budget.py`."""
 
 REFUSAL_CYCLES = 2
-"""Cycles in which a deserializer refuses a length that claims too much, and leaves its step."""
+"""Cycles in which a deserializer refuses a length that claims too much, and leaves its step: those
+4 and 5 in the second wave form of `firm_hdl/gateware/parse/sequencer.py`."""
 
 DecodeStatus: TypeAlias = Literal[
     "OK", "TRUNCATED", "TRAILING", "LENGTH", "ENCAPSULATION", "STRING"
@@ -139,7 +141,7 @@ class _Reader(Machine):
         given = self.plan.lengths[leaf]
         length = wire - 1 if given.nul and wire else wire
         if length > given.limit or not self.pay(given.charge, wire):
-            # After an error lengths read 0, so this is the first error.
+            # After an error, `read` returns nothing and lengths are 0. So this is the first error.
             self.status = "LENGTH"
             wire = length = 0
         self.length = wire

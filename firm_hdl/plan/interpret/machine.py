@@ -114,7 +114,7 @@ class Machine(ABC):
     def run(self) -> None:
         """Run the plan from start to end."""
         self.block(self.plan.items, 0)
-        self.go_to(len(self.visits))
+        self.go_to(-1)  # What followed the last step.
 
     def go_to(self, index: int) -> None:
         """Note what followed the step before."""
@@ -132,6 +132,7 @@ class Machine(ABC):
                     self.ran, self.left = item, self.length
                     if self.left:
                         self.align(item.align)
+                    # Items and NUL of one word are left to the next step, which takes them as rest.
                     keep = self.plan.word_count(item)
                     if self.left > keep:
                         self.way = "body"

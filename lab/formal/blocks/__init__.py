@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from lab.formal.blocks import (
+    assembling,
     axi_lite,
     claims,
     converters,
@@ -10,6 +11,8 @@ from lab.formal.blocks import (
     drop_gate,
     ethernet,
     fifos,
+    frames,
+    history,
     judges,
     records,
     rtps,
@@ -38,5 +41,8 @@ def all_studies() -> list[Study]:
         axi_lite,
         ethernet,
         rtps,
+        history,
+        frames,
+        assembling,
     )
     return [study for module in modules for study in module.studies()]

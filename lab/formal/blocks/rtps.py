@@ -86,7 +86,7 @@ class _Walk:
 def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
     """Return what always holds of the reader's state: with it, each claim follows from a cycle."""
     reader, parser = inner["MessageReader"], inner["ParameterReader"]
-    state, rest, left, kind = reader.state, reader.rest, reader.left, reader.kind
+    state, rest, left, kind = reader.is_in, reader.rest, reader.left, reader.kind
     event, place, at = reader.event, reader.place, Cat(0, 0, reader.index)
 
     def has(bytes_in_all: Any, left: Value = left, at: Value = at) -> Value:
@@ -100,7 +100,7 @@ def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
     outside = state("START", "HEADER", "SUBMESSAGE", "DROP") | is_header
     body = ~outside & ~state("LENGTH", "CHECK")
     is_sample = (event.kind == EventKind.SAMPLE) & ~event.is_gone & ~reader.is_part
-    in_list = parser.state("CHECK", "VALUE") | (parser.place != 0)
+    in_list = parser.is_in("CHECK", "VALUE") | (parser.place != 0)
     new = (walk.left == 0) & (walk.kind == 0) & (kind == 0)
     is_data, is_fragment = kind == Data.KIND, kind == DataFrag.KIND
     is_set = (kind == Gap.KIND) | (kind == AckNack.KIND) | (kind == NackFrag.KIND)
@@ -109,7 +109,7 @@ def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
     is_over = ~walk.begun & (place == 0)
     return Cat(
         state(),
-        parser.state(),
+        parser.is_in(),
         # In DROP, words leave whole.
         ~state("START") | is_over,
         state("START") | (rest != 0) | is_over,
@@ -138,9 +138,9 @@ def _in_step(inner: dict[str, Any], walk: _Walk) -> Value:
         ~state("PAYLOAD") | (left != 0),
         ~(state("EVENT") & is_sample) | ((left != 0) & (place == 0)),
         ~in_list | state("PARAMETERS"),
-        parser.state("HEAD", "VALUE") | (parser.place == 0),
-        ~parser.state("HEAD") | (parser.place == 0) | has(4, left, parser.place),
-        ~parser.state("VALUE") | ((parser.size != 0) & (parser.size <= left)),
+        parser.is_in("HEAD", "VALUE") | (parser.place == 0),
+        ~parser.is_in("HEAD") | (parser.place == 0) | has(4, left, parser.place),
+        ~parser.is_in("VALUE") | ((parser.size != 0) & (parser.size <= left)),
     ).all()
 
 
@@ -151,7 +151,7 @@ def _reader(scene: Scene) -> None:
     walk = _Walk(scene, block)
     packets, events, payload = block.packets, block.events, block.payload
     fragments, reader = block.fragments, inner["MessageReader"]
-    state = reader.state
+    state = reader.is_in
     m.d.comb += [
         block.own.eq(scene.rigid(96, "own")),
         block.knows.eq(scene.free(1, "knows")),
@@ -206,14 +206,14 @@ def _list(scene: Scene) -> None:
     ]
     m.d.sync += left.eq(Mux(begins, scene.free(16, "length"), left - block.takes))
     scene.claim("inside", ~block.wants | (left != 0))
-    scene.claim("inside", ~parser.state("VALUE") | ((parser.size != 0) & (parser.size <= left)))
-    is_begun = parser.state("HEAD") & (parser.place != 0)
+    scene.claim("inside", ~parser.is_in("VALUE") | ((parser.size != 0) & (parser.size <= left)))
+    is_begun = parser.is_in("HEAD") & (parser.place != 0)
     scene.claim("inside", ~is_begun | (left + parser.place >= 4))
-    scene.claim("inside", parser.state("HEAD", "VALUE") | (parser.place == 0))
+    scene.claim("inside", parser.is_in("HEAD", "VALUE") | (parser.place == 0))
     waited = progress(scene, "input moves", ~block.wants & ~is_over, 2)
-    scene.claim("input moves", parser.state())
-    scene.claim("input moves", (waited == 0) | ~parser.state("CHECK"))
-    scene.claim("input moves", (waited <= 1) | ~parser.state("HEAD", "VALUE"))
+    scene.claim("input moves", parser.is_in())
+    scene.claim("input moves", (waited == 0) | ~parser.is_in("CHECK"))
+    scene.claim("input moves", (waited <= 1) | ~parser.is_in("HEAD", "VALUE"))
 
 
 _READER, _LIST = MessageReader.elaborate, ParameterReader.elaborate

@@ -60,7 +60,8 @@ class LocalChip(Chip):
 
 @pytest.fixture(params=[False, True], ids=["registers", "descriptors"])
 def chip(request):
-    return LocalChip(has_sg=request.param)
+    # The last of three buffers is above 4 GiB.
+    return LocalChip(has_sg=request.param, address=(1 << 32) - 2 * BUFFER_BYTES)
 
 
 def bridged(chip):

@@ -192,3 +192,34 @@ def test_a_peer_that_has_just_come_does_not_give_way():
     assert wires.counters["unsent"] >= 1
     hosts = {to.host for to, _ in wires.sent}
     assert {"10.0.0.1", "10.0.0.2"} <= hosts and "10.0.0.3" not in hosts
+
+
+@pytest.mark.thorough
+def test_a_peer_has_half_of_the_endpoints_and_others_when_they_are_free():
+    said = [b"\0\1\0\0" + each for each in (b"once", b"more")]
+    # There is room for six endpoints of two peers.
+    first, second = core_of(1), core_of(2)
+    wires = Wires(description_of(clock_hz=6_000.0), first, second)
+    greedy = [first.add_reader("rt/said", STRING, Qos(), b"", 0.0) for _ in range(5)]
+    reader = second.add_reader("rt/said", STRING, Qos(), b"", 0.0)
+
+    def served(core, number):
+        ends = [each for each in wires.events[core] if isinstance(each, Arrived)]
+        return {each.reader for each in ends if each.sample.payload == said[number]}
+
+    def script():
+        yield from wires.pause(2.0)
+        wires.to_send.append((2, 0, said[0]))
+        yield from wires.until(lambda: served(second, 0))
+        yield from wires.pause(0.2)
+        assert served(first, 0) == {each.guid for each in greedy[:3]}
+        for each in greedy[1:3]:
+            first.remove(each.guid, wires.now)
+        yield from wires.pause(2.5)
+        wires.to_send.append((2, 0, said[1]))
+        yield from wires.until(lambda: len(served(first, 1)) == 3)
+        yield from wires.pause(0.2)
+
+    wires.run(script())
+    assert served(first, 1) == {each.guid for each in (greedy[0], *greedy[3:])}
+    assert served(second, 1) == {reader.guid}
