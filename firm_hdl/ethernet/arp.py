@@ -26,7 +26,8 @@ class ArpReceiver(wiring.Component):
 
     As the algorithm of RFC 826 has it, a sender that is known is updated by any message, and an
     unknown one becomes known if the message is for the node. An address that no machine can have
-    is not learned: 0.0.0.0 of a probe (RFC 5227), the node's own, and a group's in hardware.
+    is not learned: 0.0.0.0 of a probe (RFC 5227), and the node's own. A sender whose address in
+    hardware is a group's gets no answer either.
 
     The reply is handed over with the last byte of a good frame; if no slot is free, there is none.
 
@@ -73,7 +74,7 @@ class ArpReceiver(wiring.Component):
         for_node, own, group = Signal(), Signal(), Signal()
         valid, answers, room = Signal(), Signal(), Signal()
         m.d.comb += [
-            valid.eq(came.payload.good & (place == _BYTES) & known & operation),
+            valid.eq(came.payload.good & (place == _BYTES) & known & operation & ~group),
             answers.eq(valid & for_node & request & ~own),
             self.reply.kind.eq(ARP_REPLY),
             self.reply.header_byte.eq(byte),
@@ -83,7 +84,7 @@ class ArpReceiver(wiring.Component):
         m.d.sync += [self.learns.eq(0), self.inserts.eq(0), self.other.eq(0), self.full.eq(0)]
         with m.If(came.valid & self.is_arp & came.payload.end):
             m.d.sync += place.eq(0)
-            learns = valid & ~own & ~group & self.peer.ip.any()
+            learns = valid & ~own & self.peer.ip.any()
             m.d.sync += [
                 self.learns.eq(learns),
                 self.inserts.eq(learns & for_node),

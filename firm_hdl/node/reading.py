@@ -252,14 +252,8 @@ class _Reader:
     def _pins(self, entry: Entry) -> tuple[IoPins, ...]:
         """Read the pins of the members of an accelerator; which there are is up to the board."""
         found: list[IoPins] = []
-        owners: dict[str, str] = {}
         for name, each in self.marked.mapping(entry.value, "'pins'", "{pwm: [A4, B5]}").items():
             words = each.words()
-            for pin, span in words:
-                if pin in owners:
-                    message = f"the pin '{pin}' is already that of '{owners[pin]}'"
-                    self.marked.note(Diagnostic(message=message, span=span))
-                owners[pin] = name
             pins, spans = tuple(word for word, _ in words), tuple(span for _, span in words)
             place = self.marked.span(each.key)
             found.append(IoPins(name=name, pins=pins, span=place, spans=spans))

@@ -104,7 +104,8 @@ class _Traffic:
         if kind == "arp":
             asked = rnd.choice((ADDRESS, ADDRESS, host))
             head = bytes.fromhex("0806000108000604") + bytes([0, rnd.choice((1, 1, 2, 3))])
-            return b"\xff" * 6 + own + head + own + host + bytes(6) + asked
+            sender = rnd.choice((own, own, own, b"\xff" * 6))
+            return b"\xff" * 6 + own + head + sender + host + bytes(6) + asked
         options = rnd.choice((b"", b"", b"", rnd.randbytes(4 * rnd.randrange(11))))
         to, mac = ADDRESS, MAC
         if kind == "udp":
@@ -283,7 +284,7 @@ class Judge:
     @staticmethod
     def _arp(rest: bytes) -> str:
         right = rest[:6] == bytes.fromhex("000108000604") and rest[6:8] in (b"\0\1", b"\0\2")
-        if not right or rest[24:28] != ADDRESS:
+        if not right or rest[8] & 1 or rest[24:28] != ADDRESS:
             return "other"
         return "answer" if rest[7] == 1 and rest[14:18] != ADDRESS else ""
 

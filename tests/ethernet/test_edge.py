@@ -137,6 +137,9 @@ BAD = [
     ("other", wire(echo(8, options=options(1)))),
     ("other", wire(arp(target=OTHER))),
     ("other", changed(arp(), 20, 8)),
+    # The sender's address in hardware is a group's.
+    ("other", changed(arp(), 22, 0x03)),
+    ("other", wire(arp(mac=BROADCAST))),
     ("other", wire(udp(0))),
     ("malformed", changed(udp(30), 14, 0x55)),
     ("malformed", changed(udp(30), 14, 0x44)),

@@ -1,6 +1,7 @@
 // The board as a process: Verilator runs it, and Linux sees it as a machine behind a TAP device.
 //
-// board TAP: join the network of a TAP device, which has to exist; runs until it is killed.
+// board TAP: join the network of a TAP device, which has to exist. Ctrl-C, or SIGTERM, ends it, and
+// prints the counters that are not 0.
 //
 // What is simulated begins at the pins of a PHY. The PHY's clock is that of the node, half a cycle later.
 
@@ -11,6 +12,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -105,6 +107,15 @@ class Wire {
   std::vector<uint8_t> from_board_;
 };
 
+volatile std::sig_atomic_t stopped = 0;
+
+// The outputs of the node that count, as far as they are not 0.
+void print_counters(const Vboard& node) {
+#define COUNTER(NAME) \
+  if (node.NAME) std::printf(#NAME " %llu\n", static_cast<unsigned long long>(node.NAME));
+#include "counters.inc"
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -113,9 +124,10 @@ int main(int argc, char** argv) {
   if (tap < 0) return 1;
   Vboard board;
   Wire wire(board, tap);
+  for (int number : {SIGINT, SIGTERM}) std::signal(number, [](int) { stopped = 1; });
   std::printf("ready\n");
   std::fflush(stdout);
-  for (uint64_t cycles = 0;; ++cycles) {
+  for (uint64_t cycles = 0; !stopped; ++cycles) {
     // Without traffic, the board runs in slices, and the processor rests between them.
     if (cycles > kReset && cycles % 256 == 0 && !wire.fetch() && wire.idle() && cycles % 16384 == 0) {
       pollfd waiting{tap, POLLIN, 0};
@@ -130,4 +142,5 @@ int main(int argc, char** argv) {
     board.gmii_rx_clk = 0;
     board.eval();
   }
+  print_counters(board);
 }

@@ -10,9 +10,10 @@ from typing import Any, TypeAlias
 
 from firm_hdl.errors import DefinitionError, Diagnostic, Span
 from firm_hdl.export.ports import verilog_range
-from firm_hdl.node.bitstream.board import LINKS, Board
+from firm_hdl.node.bitstream.board import LINKS, Board, board_names, read_board
 from firm_hdl.node.bitstream.families import MOST_DEVIATION, Pin, Pll
 from firm_hdl.node.description import Description
+from firm_hdl.node.summary import area_of, facts_of
 
 __all__ = ["BoardTop", "board_top"]
 
@@ -87,13 +88,16 @@ def board_top(
     if is_rgmii and "rgmii.rst_n" in board.pins:
         constants.append((board.pins["rgmii.rst_n"], True))
     fixed = [board.clock, *([board.reset] if board.reset else ())]
-    fixed += [pin for pin, _ in constants]
-    taken = {pin.site: pin.name for pin in fixed}
+    taken = {pin.site: f"the board ('{pin.name}')" for pin in fixed}
+    taken |= {pin.site: f"the board, which holds it at {level:d}" for pin, level in constants}
     for pin in (pin for port in found for pin in port.pins):
-        if taken.setdefault(pin.site, pin.name) != pin.name:
+        if pin.site in taken:
             problem(
-                description.link_span, f"'{pin.name}' and '{taken[pin.site]}' are both {pin.site}"
+                description.link_span,
+                f"the pin '{pin.name}' of the link, {pin.site}, is already that of "
+                f"{taken[pin.site]}",
             )
+        taken[pin.site] = f"the link ('{pin.name}')"
     if description.accelerator:
         found += _io(description, ports, board, taken, problem)
     else:
@@ -132,11 +136,15 @@ def _pll(description: Description, board: Board, problem: Problem) -> Pll | None
         return None
     pll = board.family.pll(board.clock_hz, wanted, board.is_pll_pad)
     if pll is None or abs(pll.hz / wanted - 1) > MOST_DEVIATION:
-        near = board.clock_hz if pll is None else pll.hz
+        near = (board.clock_hz if pll is None else pll.hz) / 1e6
+        area = area_of(facts_of(description))
+        hint = f"near is 'clock_mhz: {near:.9g}'"
+        if near > area["mhz"]:
+            hint = f"the node itself reaches about {area['mhz']:.4g} MHz on {area['part']}"
         problem(
             description.clock_span or description.node_span,
             f"the clock of {board.name}, {board.clock_hz / 1e6:g} MHz, gives no {wanted / 1e6:g} "
-            f"MHz; near is 'clock_mhz: {near / 1e6:.9g}'",
+            f"MHz; {hint}",
         )
     return pll
 
@@ -148,29 +156,42 @@ def _link(
     where = description.link_span or description.node_span
     of_link = [port for port in ports if port["member"].startswith("link.")]
     group = of_link[0]["name"].partition("_")[0]
+    there = [each for each in LINKS if each in board.groups()]
+    if group in LINKS and group not in there:
+        others = [name for name in board_names() if group in read_board(name).groups()]
+        message = f"{board.name} has no {group.upper()}; boards that have one: {', '.join(others)}"
+        problem(where, message)
+        return []
     if group not in LINKS:
-        there = [each for each in LINKS if each in board.groups()]
-        link = "kind: uart" if there[0] == "uart" else f"kind: udp, ethernet: {there[0]}, ..."
+        link = description.link
+        is_udp = link.kind in ("udp", "rtps")
+        ways = {
+            "rgmii": "'ethernet: rgmii'" if is_udp else "'link: {kind: udp, ethernet: rgmii, ...}'",
+            "uart": "'link: {kind: uart}'",
+        }
+        needs = " or ".join(ways[each] for each in ways if each in there)
+        what = f"ethernet: {link.ethernet}" if link.has_ethernet else link.kind
         problem(
             where,
-            f"{board.name} has {' and '.join(there)}, so the description needs 'link: {{{link}}}'; "
-            f"for '{description.link.kind}', the top level is yours to write",
+            f"{board.name} has {' and '.join(there) or 'no link'}"
+            f"{needs and f', so the description needs {needs}'}; for '{what}', the top level is "
+            "yours to write",
         )
         return []
-    found = []
+    found, missing = [], []
     for port in of_link:
         if port["name"] == NONCE:
             continue
         width = port["width"]
         names = [f"{port['name']}{bit if width > 1 else ''}" for bit in range(width)]
         names = [name.replace("_", ".", 1) for name in names]
-        if missing := [name for name in names if name not in board.pins]:
-            problem(where, f"{board.name} has no pin '{missing[0]}' for the link")
-            continue
-        pins = [board.pins[name] for name in names]
+        missing += [name for name in names if name not in board.pins]
+        pins = [board.pins[name] for name in names if name in board.pins]
         inner = {port["direction"][0]: port["name"]}
         direction = f"{port['direction']}put"
         found.append(_Port(name=port["name"], direction=direction, pins=pins, inner=inner))
+    if missing:
+        problem(where, f"{board.name} lacks pins of the link: {', '.join(missing)}")
     return found
 
 
@@ -216,10 +237,10 @@ def _io(
             if not chosen:
                 problem(span, _unknown(board, word))
             for pin in chosen:
-                owner = taken.setdefault(pin.site, name)
-                if owner != name or pin.site in [each.site for each in pins]:
+                if pin.site in taken:
                     site = f", {pin.site}," if word != pin.site else ""
-                    problem(span, f"the pin '{word}'{site} is already that of '{owner}'")
+                    problem(span, f"the pin '{word}'{site} is already that of {taken[pin.site]}")
+                taken.setdefault(pin.site, f"'{name}'")
             pins += chosen
         if len(pins) != bits and len(pins) >= len(given[name].pins):
             problem(given[name].span, f"'{name}' has {bits} bits, and is given {len(pins)} pins")

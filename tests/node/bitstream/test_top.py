@@ -21,6 +21,9 @@ from tests.tools import need
 # A board with a PLL, a button for the reset, and lamps of both kinds.
 BOARD = "like: ulx3s-85f\nreset: {pin: A2, active: low}\npins: {lamp: {pins: D1, active: low}}\n"
 
+UART = "link: {kind: uart, baud: 1250000, memory_bytes: 64, packets: 2}"
+PHY = '{kind: rtps, ethernet: rgmii, mac: "02:00:00:00:00:50", address: 192.168.1.50/24}'
+
 BENCH = """\
 // The clock of the node is that of the board, which simulates quickest.
 module EHXPLLL #(
@@ -132,25 +135,45 @@ def test_each_mistake_is_at_its_place_in_the_description():
         "10:16-5: ulx3s-85f has no pin 'led.9'; 'led' has 0, 1, 2, 3, 4, 5, 6, 7",
         f"10:23-2: ulx3s-85f has no pin 'L2'. {has.replace('ulx3s-85f', 'It')}",
         "10:33-5: the accelerator has no member 'buton'; did you mean 'button'?",
-        "10:51-2: the pin 'M1' is already that of 'uart.rx'",
+        "10:51-2: the pin 'M1' is already that of the link ('uart.rx')",
     ]
     twice = "pins: {lamps: [led.0, B2], button: button.1, wire: gpio.0+, bus.a: C2}\n"
     assert errors(description(twice)) == ["10:23-2: the pin 'B2' is already that of 'lamps'"]
+
+
+def test_all_mistakes_are_told_at_once():
+    pins = "pins: {lamps: [led.0, led.0], button: A1, wire: pmod0.2, bus.a: pmod0.1}\n"
+    said = errors(description(pins, {"clock_mhz: 5": "clock_mhz: 1000"}), "ecpix5-85f")
+    lacks = "ecpix5-85f has no pin"
+    assert [each.partition(" It has")[0] for each in said] == [
+        "2:12-4: the clock of ecpix5-85f, 100 MHz, gives no 1000 MHz; the node itself reaches "
+        "about 154 MHz on ECP5 LFE5U-45F-8",
+        *(f"10:{at}-5: {lacks} 'led.0'; did you mean 'rgb_led.r0'?" for at in (16, 23)),
+        f"10:39-2: {lacks} 'A1'; did you mean 'A21'?",
+    ]
 
 
 @pytest.mark.parametrize(
     ("change", "board", "error"),
     [
         (
-            {"link: {kind: uart, baud: 1250000, memory_bytes: 64, packets: 2}": "link: udp"},
+            {UART: "link: udp"},
             "ulx3s-85f",
             "4:7-3: ulx3s-85f has uart, so the description needs 'link: {kind: uart}'; for 'udp', "
             "the top level is yours to write",
         ),
         (
-            {"clock_mhz: 5": "clock_mhz: 600"},
-            "ulx3s-85f",
-            "2:12-3: the clock of ulx3s-85f, 25 MHz, gives no 600 MHz; near is 'clock_mhz: 400'",
+            {UART: "link: stream"},
+            "ecpix5-85f",
+            "4:7-6: ecpix5-85f has uart and rgmii, so the description needs 'link: {kind: udp, "
+            "ethernet: rgmii, ...}' or 'link: {kind: uart}'; for 'stream', the top level is yours "
+            "to write",
+        ),
+        (
+            {UART: f"link: {PHY.replace('rgmii', 'mii')}", "clock_mhz: 5": "clock_mhz: 25"},
+            "ecpix5-85f",
+            "4:7-79: ecpix5-85f has uart and rgmii, so the description needs 'ethernet: rgmii' or "
+            "'link: {kind: uart}'; for 'ethernet: mii', the top level is yours to write",
         ),
         (
             {"clock_mhz: 5": "clock_mhz: 5\nregisters: axi4lite"},
@@ -166,6 +189,25 @@ def test_each_mistake_is_at_its_place_in_the_description():
 )
 def test_a_board_that_does_not_fit_is_refused(change, board, error):
     assert error in errors(description(changes=change), board)
+
+
+def test_a_board_without_rgmii_says_so_once():
+    said = errors(description(changes={UART: f"link: {PHY}", "clock_mhz: 5": "clock_mhz: 25"}))
+    assert said == [
+        "4:7-81: ulx3s-85f has no RGMII; boards that have one: colorlight-5a-75b, colorlight-i5, "
+        "colorlight-i9, ecpix5-45f, ecpix5-85f, versa-ecp5, versa-ecp5-5g"
+    ]
+
+
+def test_a_board_of_ones_own_may_lack_a_link_or_some_of_its_pins(tmp_path):
+    text = BOARD.replace("lamp:", "uart: {names: rx, pins: M1}, lamp:")
+    (tmp_path / "mine.yaml").write_text(text)
+    lacks = "4:7-57: mine lacks pins of the link: uart.tx"
+    assert lacks in errors(description(), str(tmp_path / "mine.yaml"))
+    whole = "title: t\ndevice: LFE5U-25F\npackage: CABGA256\nclock: {pin: P6, mhz: 25}\n"
+    (tmp_path / "none.yaml").write_text(f"{whole}speed: 6\npins: {{led: {{pins: A1}}}}\n")
+    lacks = "4:7-3: none has no link; for 'udp', the top level is yours to write"
+    assert lacks in errors(description(changes={UART: "link: udp"}), str(tmp_path / "none.yaml"))
 
 
 def test_a_node_without_accelerator_has_no_pins():
@@ -185,6 +227,14 @@ def test_an_rgmii_has_its_pins_its_clock_and_no_reset():
     ]
     # That of a participant of ROS 2, which has no pins.
     ports.append({"name": "nonce", "direction": "in", "width": 32, "member": "link.nonce"})
+    pins = "pins: {lamps: [rgmii.txd, rgmii.rst_n]}\n"
+    wanted = description(pins, {"clock_mhz: 5": "clock_mhz: 125"})
+    with pytest.raises(DefinitionError) as raised:
+        lamps = {"name": "io_lamps", "direction": "out", "width": 2, "member": "io.lamps"}
+        board_top(wanted, [*ports, lamps], "pins_verilog", read_board("ecpix5-45f"))
+    said = [each.message for each in raised.value.diagnostics]
+    own = "the pin 'rgmii.rst_n', C13, is already that of the board, which holds it at 1"
+    assert own in said, said
     wanted = description("pins: {}\n", {"clock_mhz: 5": "clock_mhz: 125"})
     top = board_top(wanted, ports, "pins_verilog", read_board("ecpix5-45f"))
     for line in (
