@@ -113,8 +113,8 @@ class Walk:
         # First byte after the state's map or word; bytes in the buffer from there on, negative if
         # bytes of the state are missing.
         self.step_end, self.left = ring.position("step_end"), ring.position("left")
-        # A state without bytes ends at the first byte of the ring. If the ring is full, the distance
-        # from there to the limit is all of it, and looks negative:
+        # A state without bytes ends where the ring begins. If the ring is full, the distance from
+        # there to the limit is all of it, and looks negative:
         #
         #   | word 0 | word 1 | ... | word 7 |
         #   ^ step_end                       ^ limit
