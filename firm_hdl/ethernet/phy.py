@@ -108,9 +108,12 @@ class _SymbolsIn(wiring.Component):
         m.d.comb += [
             fifo.w_data.eq(Cat(self.data, self.enable, self.error)),
             fifo.w_en.eq(self.valid & (self.enable | before)),
+            fifo.r_en.eq(1),
+        ]
+        # It is a long way from the positions of the FIFO to whether there is a symbol.
+        m.d.sync += [
             Value.cast(self.symbols.payload).eq(fifo.r_data),
             self.symbols.valid.eq(fifo.r_rdy),
-            fifo.r_en.eq(1),
         ]
         return m
 
@@ -125,7 +128,7 @@ def _add_domain(m: Module, name: str, clock: Any) -> None:
 class _Phy(wiring.Component):
     """What all PHYs have: the pins, and symbols in both directions, in `sync`.
 
-    A symbol that comes is on `received` 5 to 6 cycles later. What is sent is on the pins one cycle
+    A symbol that comes is on `received` 6 to 7 cycles later. What is sent is on the pins one cycle
     after its transfer, with a GMII or an RGMII.
 
     Members
