@@ -13,7 +13,7 @@ from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.datagrams import datagram_layout
 from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
-from firm_hdl.ethernet.phy import PHYS, GmiiSignature, MiiSignature, RgmiiSignature
+from firm_hdl.ethernet.phy import PHYS
 from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.node.control import ethernet_counter
@@ -43,8 +43,6 @@ checksum of its datagram is due, and those that it would send while it reads the
 
 _WORDS = 16
 """Words between two clock domains: enough for a word per cycle."""
-
-_PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
 
 class EthernetLink(wiring.Component):
@@ -87,7 +85,7 @@ class EthernetLink(wiring.Component):
     def medium(link: Link) -> dict[str, Any]:
         """Return the members that face the medium."""
         nonce = {"nonce": In(32)} if link.kind == "rtps" else {}
-        return {link.ethernet: Out(_PINS[link.ethernet]()), **nonce}
+        return {link.ethernet: Out(PHYS[link.ethernet].pin_signature()), **nonce}
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -152,9 +150,7 @@ class EthernetLink(wiring.Component):
     def _cross(self, m: Module, phy: Any, network: EthernetEdge, upper: Any) -> dict[str, Signal]:
         """Put PHY and edge into a domain of their own; return the edge's strobes in `sync`."""
         domain = ClockDomain(_APART, local=True)
-        domain.clk = getattr(
-            phy.pins, "rxc" if self.description.link.ethernet == "rgmii" else "rx_clk"
-        )
+        domain.clk = getattr(phy.pins, phy.received_clock)
         m.domains += domain
         m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
         m.submodules.phy = DomainRenamer(_APART)(phy)
