@@ -152,7 +152,9 @@ class EthernetLink(wiring.Component):
         domain = ClockDomain(_APART, local=True)
         domain.clk = getattr(phy.pins, phy.received_clock)
         m.domains += domain
-        m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
+        # A stage more than a FIFO has: else Yosys makes one register of both, and the positions of
+        # the FIFO wait for that of all resets, far away.
+        m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART, stages=3)
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
         # Without registers between, it is too long a way from the edge into a FIFO.
