@@ -39,8 +39,6 @@ class ArpReceiver(wiring.Component):
     Members
     -------
     payloads : In(FrameSignature())
-    is_arp : In(1)
-        The payload is an ARP message.
     reply : Out(SlotWriterSignature())
         Hardware and protocol address of the sender, as bytes 0 to 9 of the header.
     peer : Out(peer_layout())
@@ -56,7 +54,6 @@ class ArpReceiver(wiring.Component):
         super().__init__(
             {
                 "payloads": In(FrameSignature()),
-                "is_arp": In(1),
                 "reply": Out(SlotWriterSignature()),
                 "peer": Out(peer_layout()),
                 "learns": Out(1),
@@ -77,12 +74,14 @@ class ArpReceiver(wiring.Component):
             valid.eq(came.payload.good & (place == _BYTES) & known & operation & ~group),
             answers.eq(valid & for_node & request & ~own),
             self.reply.kind.eq(ARP_REPLY),
+            # The addresses of the sender are bytes 8 to 17.
+            self.reply.header_at.eq(Cat(place[:3], place[4])),
             self.reply.header_byte.eq(byte),
         ]
         # `peer` is a shift register. It stays for 34 cycles behind a frame: 12 in which none comes,
         # 14 bytes of Ethernet, and 8 of the next message. The cache needs it for 21.
         m.d.sync += [self.learns.eq(0), self.inserts.eq(0), self.other.eq(0), self.full.eq(0)]
-        with m.If(came.valid & self.is_arp & came.payload.end):
+        with m.If(came.valid & came.payload.end):
             m.d.sync += place.eq(0)
             learns = valid & ~own & self.peer.ip.any()
             m.d.sync += [
@@ -92,7 +91,7 @@ class ArpReceiver(wiring.Component):
                 self.full.eq(answers & ~room),
             ]
             m.d.comb += self.reply.commit.eq(answers & room)
-        with m.Elif(came.valid & self.is_arp):
+        with m.Elif(came.valid):
             m.d.sync += place.eq(Mux(place == _BYTES, _BYTES, place + 1))
             # Ethernet, IPv4, sizes of their addresses.
             compare(m, known, byte, place, 0, (1 << 32 | IPV4 << 16 | 6 << 8 | 4), 6)
@@ -107,16 +106,10 @@ class ArpReceiver(wiring.Component):
                 with m.Case(8):
                     m.d.sync += group.eq(byte[0])
             with m.If((place >= 8) & (place < 14)):
-                m.d.comb += [
-                    self.reply.header_write.eq(1),
-                    self.reply.header_at.eq(place - 8),
-                ]
+                m.d.comb += self.reply.header_write.eq(1)
                 m.d.sync += self.peer.mac.eq(Cat(byte, self.peer.mac))
             with m.If((place >= 14) & (place < 18)):
-                m.d.comb += [
-                    self.reply.header_write.eq(1),
-                    self.reply.header_at.eq(place - 8),
-                ]
+                m.d.comb += self.reply.header_write.eq(1)
                 m.d.sync += self.peer.ip.eq(Cat(byte, self.peer.ip))
         return m
 

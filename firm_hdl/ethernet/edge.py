@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from amaranth.hdl import Module, Signal
+from amaranth.hdl import Module, Mux, Signal
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -158,11 +158,9 @@ class EthernetEdge(wiring.Component):
 
         wiring.connect(m, wiring.flipped(self.symbols_in), mac.symbols)
         wiring.connect(m, mac.frames, header.frames)
+        wiring.connect(m, header.arp, arp.payloads)
+        wiring.connect(m, header.ipv4, ipv4.payloads)
         m.d.comb += [
-            *_watch(header.payloads, arp.payloads),
-            *_watch(header.payloads, ipv4.payloads),
-            arp.is_arp.eq(header.is_arp),
-            ipv4.is_ipv4.eq(header.is_ipv4),
             ipv4.to_node.eq(header.to_node),
             ipv4.to_group.eq(header.to_group),
             cache.peer.eq(arp.peer),
@@ -221,10 +219,7 @@ class EthernetEdge(wiring.Component):
         for name, flow in replies.writer.signature.members.items():
             if flow.flow == In:
                 parts = [getattr(part.reply, name) for part in (arp, echo)]
-                chosen = getattr(replies.writer, name)
-                m.d.comb += chosen.eq(parts[1])
-                with m.If(header.is_arp):
-                    m.d.comb += chosen.eq(parts[0])
+                m.d.sync += getattr(replies.writer, name).eq(Mux(header.is_arp, *parts))
         m.d.comb += [
             arp.reply.free.eq(replies.writer.free),
             echo.reply.free.eq(replies.writer.free),

@@ -6,7 +6,7 @@ from amaranth.hdl import Array, Cat, Module, Mux, Signal
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.ethernet.ipv4 import Ipv4Signature, check_state_layout
+from firm_hdl.ethernet.ipv4 import Ipv4Signature, check_state_layout, in_payload
 from firm_hdl.ethernet.udp import HEADER_BYTES, StoreSignature
 from firm_hdl.gateware.memories import BlockMemory
 
@@ -149,7 +149,7 @@ class Reassembler(wiring.Component):
                 came.valid
                 & ~came.payload.end
                 & fragment
-                & (header.place == 20)
+                & in_payload(header)
                 & chosen
                 & fits
                 & (at[3:] < limit)

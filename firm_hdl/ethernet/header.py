@@ -36,11 +36,11 @@ class HeaderReceiver(wiring.Component):
     Members
     -------
     frames : In(FrameSignature())
-    payloads : Out(FrameSignature())
-        Without padding removed. Of a dropped frame, nothing comes.
-    is_ipv4, is_arp : Out(1)
+    ipv4, arp : Out(FrameSignature())
+        Payloads, without padding removed. Of a dropped frame, nothing comes.
+    is_arp : Out(1)
     to_node, to_group, to_all : Out(1)
-        The kind of destination. Like `is_ipv4`, they keep their values with all bytes of a payload.
+        The kind of destination. Like `is_arp`, they keep their values with all bytes of a payload.
     other : Out(1)
         A good frame was dropped.
     """
@@ -50,8 +50,8 @@ class HeaderReceiver(wiring.Component):
         super().__init__(
             {
                 "frames": In(FrameSignature()),
-                "payloads": Out(FrameSignature()),
-                "is_ipv4": Out(1),
+                "ipv4": Out(FrameSignature()),
+                "arp": Out(FrameSignature()),
                 "is_arp": Out(1),
                 "to_node": Out(1),
                 "to_group": Out(1),
@@ -62,20 +62,17 @@ class HeaderReceiver(wiring.Component):
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
-        came, out = self.frames, self.payloads
+        came = self.frames
         place = Signal(range(_HEADER_BYTES + 1))
-        inside, ours = Signal(), Signal()
+        inside, ours, is_ipv4 = Signal(), Signal(), Signal()
         m.d.comb += [
             inside.eq(place == _HEADER_BYTES),
-            ours.eq(
-                inside & (self.is_ipv4 | self.is_arp) & (self.to_node | self.to_group | self.to_all)
-            ),
+            ours.eq(inside & (self.to_node | self.to_group | self.to_all)),
         ]
-        m.d.sync += [
-            out.valid.eq(came.valid & ours),
-            out.payload.eq(came.payload),
-            self.other.eq(came.valid & came.payload.end & came.payload.good & ~ours),
-        ]
+        for out, is_kind in ((self.ipv4, is_ipv4), (self.arp, self.is_arp)):
+            m.d.sync += [out.valid.eq(came.valid & ours & is_kind), out.payload.eq(came.payload)]
+        is_known = ours & (is_ipv4 | self.is_arp)
+        m.d.sync += self.other.eq(came.valid & came.payload.end & came.payload.good & ~is_known)
         with m.If(came.valid & came.payload.end):
             m.d.sync += place.eq(0)
         with m.Elif(came.valid):
@@ -84,6 +81,6 @@ class HeaderReceiver(wiring.Component):
             compare(m, self.to_node, byte, place, 0, self.mac, 6)
             compare(m, self.to_all, byte, place, 0, BROADCAST, 6)
             compare(m, self.to_group, byte, place, 0, _MULTICAST, 3)
-            compare(m, self.is_ipv4, byte, place, 12, IPV4, 2)
+            compare(m, is_ipv4, byte, place, 12, IPV4, 2)
             compare(m, self.is_arp, byte, place, 12, ARP, 2)
         return m

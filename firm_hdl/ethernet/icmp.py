@@ -6,7 +6,7 @@ from amaranth.hdl import Cat, Const, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.ethernet.ipv4 import Ipv4Signature
+from firm_hdl.ethernet.ipv4 import Ipv4Signature, in_payload
 from firm_hdl.ethernet.slots import ECHO, ECHO_REST, SlotWriterSignature
 from firm_hdl.ethernet.streams import add_word
 
@@ -57,18 +57,21 @@ class EchoReceiver(wiring.Component):
     def elaborate(self, platform: object) -> Module:
         m = Module()
         came, header, reply = self.datagrams.bytes, self.datagrams.header, self.reply
-        byte = came.payload.data
-        in_payload, first = Signal(), header.first
+        byte, place = came.payload.data, header.place
+        is_payload, first = in_payload(header), header.first
         count = Signal.like(reply.payload_at)
-        request, room, continues = Signal(), Signal(), Signal()
+        request, room, continues, answers = Signal(), Signal(), Signal(), Signal()
         checksum = Signal(16)
         # The request that may go on, and where.
         source, identification = Signal(32), Signal(16)
         next_offset, more = Signal(13), Signal()
         ends, writes_sum = Signal(), Signal(3)
         m.d.comb += [
-            in_payload.eq(header.place == 20),
             reply.kind.eq(Mux(first, ECHO, ECHO_REST)),
+            # Bytes 2 to 7 go to 10 to 15, and those of the source to 6 to 9.
+            reply.header_at.eq(
+                Mux(place[3], Cat(place[0], ~place[1], ~place[1], place[1]), place[:3] | 8)
+            ),
             reply.header_byte.eq(byte),
             reply.payload_at.eq(count),
             reply.payload_word.eq(byte),
@@ -80,29 +83,27 @@ class EchoReceiver(wiring.Component):
                 & (identification == header.identification)
                 & (next_offset == header.offset)
             ),
+            # All of it is there a cycle before `ends`.
+            answers.eq(
+                ~header.options
+                & header.to_node
+                & Mux(first, request & (header.length >= _HEADER_BYTES), continues)
+            ),
             writes_sum.eq(writes_sum << 1),
             ends.eq(came.valid & came.payload.end & came.payload.good & header.icmp),
             self.wrong.eq(0),
             self.other.eq(0),
             self.full.eq(0),
         ]
-        with m.If(came.valid & ~came.payload.end & ~in_payload):
+        with m.If(came.valid & ~came.payload.end & ~is_payload):
             m.d.sync += count.eq(0)
-            with m.Switch(header.place):
+            with m.Switch(place):
                 with m.Case(0):
                     m.d.sync += room.eq(reply.free)
-                with m.Case(2, 3, 4, 5, 6, 7):
-                    m.d.comb += [
-                        reply.header_write.eq(1),
-                        reply.header_at.eq(header.place + 8),
-                    ]
-                with m.Case(12, 13, 14, 15):
-                    m.d.comb += [
-                        reply.header_write.eq(1),
-                        reply.header_at.eq(header.place - 6),
-                    ]
+                with m.Case(2, 3, 4, 5, 6, 7, 12, 13, 14, 15):
+                    m.d.comb += reply.header_write.eq(1)
             # The bit that RFC 791 reserves is sent as 0.
-            with m.If(header.place == 6):
+            with m.If(place == 6):
                 m.d.comb += reply.header_byte.eq(byte & 0x7F)
         with m.Elif(came.valid & ~came.payload.end):
             with m.If(first & (header.index < 4)), m.Switch(header.index):
@@ -131,8 +132,6 @@ class EchoReceiver(wiring.Component):
             ]
         with m.If(ends):
             whole = first & ~header.more
-            begins = request & (header.length >= _HEADER_BYTES)
-            answers = ~header.options & header.to_node & Mux(first, begins, continues)
             checked = answers & (self.right | ~whole)
             m.d.comb += reply.commit.eq(checked & room)
             m.d.sync += [

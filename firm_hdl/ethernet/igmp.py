@@ -6,7 +6,7 @@ from amaranth.hdl import Cat, Module, Mux, Signal
 from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
-from firm_hdl.ethernet.ipv4 import Ipv4Signature
+from firm_hdl.ethernet.ipv4 import Ipv4Signature, in_payload
 from firm_hdl.ethernet.streams import compare
 
 __all__ = ["IgmpHost"]
@@ -79,7 +79,7 @@ class IgmpHost(wiring.Component):
             self.wrong.eq(ends & ~self.right),
             self.other.eq(0),
         ]
-        with m.If(came.valid & ~came.payload.end & (header.place == 20)):
+        with m.If(came.valid & ~came.payload.end & in_payload(header)):
             with m.Switch(header.index):
                 with m.Case(0):
                     m.d.sync += query.eq(byte == _QUERY)
@@ -104,12 +104,12 @@ class IgmpHost(wiring.Component):
             ]
         valid = query & self.right & ~header.more & header.first
         valid = valid & (general | Cat(ours).any()) & (header.length >= 8)
-        with m.If(ends & valid):
-            # A mask of ones keeps the delay within the maximum; a tick is less than a tenth.
-            mask = Cat(maximum[1 + bit :].any() for bit in range(len(counter)))
-            within = (counter & mask) + 1
-            with m.If((delay == 0) | (within < delay)):
-                m.d.sync += delay.eq(within)
+        # A mask of ones keeps the delay within the maximum; a tick is less than a tenth.
+        mask = Cat(maximum[1 + bit :].any() for bit in range(len(counter)))
+        within = Signal.like(delay)
+        m.d.sync += within.eq((counter & mask) + 1)
+        with m.If(ends & valid), m.If((delay == 0) | (within < delay)):
+            m.d.sync += delay.eq(within)
         with m.Elif(ends):
             m.d.sync += self.other.eq(self.right)
         return m

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from amaranth.hdl import Cat, Const, Module, Mux, Signal
+from amaranth.hdl import Cat, Const, Module, Mux, Signal, Value
 from amaranth.lib import data, wiring
 from amaranth.lib.wiring import In, Out
 
@@ -18,6 +18,7 @@ __all__ = [
     "PayloadCheck",
     "check_state_layout",
     "header_layout",
+    "in_payload",
 ]
 
 ICMP, IGMP, UDP = 1, 2, 17
@@ -85,6 +86,11 @@ def Ipv4Signature() -> wiring.Signature:
     return wiring.Signature({"bytes": Out(FrameSignature()), "header": Out(header_layout())})
 
 
+def in_payload(header: data.View[data.StructLayout]) -> Value:
+    """Whether a byte is one of the payload: its place is 20, and none is above that."""
+    return header.place[4] & header.place[2]
+
+
 class Ipv4Receiver(wiring.Component):
     """Check the header of datagrams, skip its options, and cut the padding off.
 
@@ -104,7 +110,7 @@ class Ipv4Receiver(wiring.Component):
     Members
     -------
     payloads : In(FrameSignature())
-    is_ipv4, to_node, to_group : In(1)
+    to_node, to_group : In(1)
         As those of a :class:`firm_hdl.ethernet.header.HeaderReceiver`.
     datagrams : Out(Ipv4Signature())
     malformed, other : Out(1)
@@ -116,7 +122,6 @@ class Ipv4Receiver(wiring.Component):
         super().__init__(
             {
                 "payloads": In(FrameSignature()),
-                "is_ipv4": In(1),
                 "to_node": In(1),
                 "to_group": In(1),
                 "datagrams": Out(Ipv4Signature()),
@@ -131,7 +136,7 @@ class Ipv4Receiver(wiring.Component):
         out, header = self.datagrams.bytes, self.datagrams.header
         # The place in the header, options included.
         place = Signal(range(4 * _MOST_WORDS + 1))
-        words = Signal(4)
+        words, last_word = Signal(4), Signal(4)
         in_header, wrong, right = Signal(init=1), Signal(), Signal()
         total = Signal(17)
         length, rest, left = Signal(16), Signal(17), Signal(11)
@@ -154,11 +159,12 @@ class Ipv4Receiver(wiring.Component):
             self.malformed.eq(0),
             self.other.eq(0),
             right.eq(is_all_ones(total) & ~wrong & ~own & ~nobody),
+            last_word.eq(words - 1),
             # Wraps around if the header is longer than the datagram.
             rest.eq(length - Cat(Const(0, 2), words)),
             header.options.eq(words != least),
         ]
-        with m.If(came.valid & self.is_ipv4 & came.payload.end):
+        with m.If(came.valid & came.payload.end):
             m.d.sync += [place.eq(0), in_header.eq(1)]
             whole = right & ~in_header & (left == 0)
             m.d.sync += [
@@ -167,7 +173,7 @@ class Ipv4Receiver(wiring.Component):
                 self.malformed.eq(came.payload.good & ~whole),
                 self.other.eq(came.payload.good & whole & ~(ours & known)),
             ]
-        with m.Elif(came.valid & self.is_ipv4 & in_header):
+        with m.Elif(came.valid & in_header):
             m.d.sync += [
                 place.eq(place + 1),
                 header.index.eq(15),
@@ -177,7 +183,7 @@ class Ipv4Receiver(wiring.Component):
             ]
             with m.If(place < _HEADER_BYTES):
                 m.d.sync += [out.valid.eq(1), header.place.eq(place)]
-            with m.If((place[2:] == words - 1) & place[:2].all() & ~begins):
+            with m.If((place[2:] == last_word) & place[:2].all()):
                 m.d.sync += [in_header.eq(0), left.eq(rest), header.length.eq(rest)]
                 with m.If(rest[11:].any()):
                     m.d.sync += wrong.eq(1)
@@ -212,7 +218,7 @@ class Ipv4Receiver(wiring.Component):
                     m.d.sync += nobody.eq(byte[5:].all() | (byte == 0))
             with m.If((place >= 12) & (place < 16)):
                 m.d.sync += header.source.eq(Cat(byte, header.source))
-        with m.Elif(came.valid & self.is_ipv4):
+        with m.Elif(came.valid):
             m.d.sync += [
                 out.valid.eq(left != 0),
                 left.eq(left - (left != 0)),
@@ -287,19 +293,16 @@ class PayloadCheck(wiring.Component):
         m = Module()
         came, header, state = self.datagrams.bytes, self.datagrams.header, self.state
         byte = came.payload.data
-        first, in_payload = header.first, Signal()
+        first, is_payload = header.first, in_payload(header)
         word, adds = Signal(16), Signal()
         ports = [Signal(name=f"port_{port}") for port in self.ports]
-        place = Mux(in_payload, header.index, header.place)
-        m.d.comb += [
-            in_payload.eq(header.place == _HEADER_BYTES),
-            word.eq(Mux(place[0], byte, Cat(Const(0, 8), byte))),
-        ]
+        place = Mux(is_payload, header.index, header.place)
+        m.d.comb += word.eq(Mux(place[0], byte, Cat(Const(0, 8), byte)))
         pseudo = header.udp & first & (header.place >= 12)
-        m.d.comb += adds.eq(came.valid & ~came.payload.end & (in_payload | pseudo))
+        m.d.comb += adds.eq(came.valid & ~came.payload.end & (is_payload | pseudo))
         # The length of UDP counts twice, as it is in the pseudo header, too. Twice a word in one's
         # complement is the word rotated by a bit. A byte is half a word, in one half or the other.
-        twice = in_payload & header.udp & first & (header.index[1:] == 2)
+        twice = is_payload & header.udp & first & (header.index[1:] == 2)
         m.d.sync += self.right.eq(is_all_ones(state.total) | (header.udp & state.no_sum))
         with m.If(self.load):
             m.d.sync += state.eq(self.loaded)
@@ -309,7 +312,7 @@ class PayloadCheck(wiring.Component):
             m.d.sync += state.total.eq(
                 add_word(state.total, Mux(twice, Cat(word[-1], word[:-1]), word))
             )
-        with m.If(came.valid & ~came.payload.end & in_payload & header.udp & first):
+        with m.If(came.valid & ~came.payload.end & is_payload & header.udp & first):
             for flag, port in zip(ports, self.ports, strict=True):
                 compare(m, flag, byte, header.index, 2, port, 2)
             with m.Switch(header.index):

@@ -133,7 +133,8 @@ class MacTransmitter(wiring.Component):
         check_bytes = Signal(32)
         m.d.comb += [
             goes.eq(~out.valid | out.ready),
-            check.data.eq(byte),
+            # Padding is 0.
+            check.data.eq(Mux(takes, came.payload.data, 0)),
             enough.eq(count == _LEAST - _CHECK_BYTES - 1),
             came.ready.eq(goes & takes),
         ]
@@ -155,12 +156,13 @@ class MacTransmitter(wiring.Component):
                 with m.State("PREAMBLE"):
                     m.d.comb += byte.eq(Mux(steps == 7, _START, _PREAMBLE))
                     with m.If(steps == 7):
+                        m.d.sync += takes.eq(1)
                         m.next = "DATA"
                 with m.State("DATA"):
-                    m.d.comb += [takes.eq(1), byte.eq(came.payload.data), check.valid.eq(1)]
+                    m.d.comb += [byte.eq(came.payload.data), check.valid.eq(1)]
                     m.d.sync += count.eq(Mux(enough, count, count + 1))
                     with m.If(came.payload.last):
-                        m.d.sync += steps.eq(0)
+                        m.d.sync += [steps.eq(0), takes.eq(0)]
                         m.next = "CHECK"
                         with m.If(~enough):
                             m.next = "PAD"

@@ -6,7 +6,7 @@ FIFO, where the two clocks may differ by what Ethernet allows (100 ppm each) dur
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from amaranth.hdl import Cat, ClockDomain, ClockSignal, Const, Instance, Module, Mux, Signal, Value
 from amaranth.lib import wiring
@@ -108,9 +108,12 @@ class _SymbolsIn(wiring.Component):
         m.d.comb += [
             fifo.w_data.eq(Cat(self.data, self.enable, self.error)),
             fifo.w_en.eq(self.valid & (self.enable | before)),
+            fifo.r_en.eq(1),
+        ]
+        # It is a long way from the positions of the FIFO to whether there is a symbol.
+        m.d.sync += [
             Value.cast(self.symbols.payload).eq(fifo.r_data),
             self.symbols.valid.eq(fifo.r_rdy),
-            fifo.r_en.eq(1),
         ]
         return m
 
@@ -125,7 +128,7 @@ def _add_domain(m: Module, name: str, clock: Any) -> None:
 class _Phy(wiring.Component):
     """What all PHYs have: the pins, and symbols in both directions, in `sync`.
 
-    A symbol that comes is on `received` 5 to 6 cycles later. What is sent is on the pins one cycle
+    A symbol that comes is on `received` 6 to 7 cycles later. What is sent is on the pins one cycle
     after its transfer, with a GMII or an RGMII.
 
     Members
@@ -136,10 +139,14 @@ class _Phy(wiring.Component):
     sent : In(SymbolSignature())
     """
 
-    def __init__(self, pins: wiring.Signature):
+    pin_signature: ClassVar[Any]
+    received_clock: ClassVar[str] = "rx_clk"
+    """The pin with the clock of what is received."""
+
+    def __init__(self) -> None:
         super().__init__(
             {
-                "pins": Out(pins),
+                "pins": Out(self.pin_signature()),
                 "received": Out(SymbolSignature()),
                 "sent": In(SymbolSignature()),
             }
@@ -149,8 +156,7 @@ class _Phy(wiring.Component):
 class GmiiPhy(_Phy):
     """A GMII: 1 Gbit/s, a byte per cycle. `sync` has 125 MHz, and is the clock of what is sent."""
 
-    def __init__(self) -> None:
-        super().__init__(GmiiSignature())
+    pin_signature = staticmethod(GmiiSignature)
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -178,8 +184,7 @@ class MiiPhy(_Phy):
     A byte that is cut at the end of a frame is dropped, as clause 4.2.4.2.1 has it.
     """
 
-    def __init__(self) -> None:
-        super().__init__(MiiSignature())
+    pin_signature = staticmethod(MiiSignature)
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -231,9 +236,12 @@ class RgmiiPhy(_Phy):
     * `rx_delay_ns`, `tx_delay_ns`: 0 to 3; a step is 0.025 ns.
     """
 
+    pin_signature = staticmethod(RgmiiSignature)
+    received_clock = "rxc"
+
     def __init__(self, rx_delay_ns: float = 2.0, tx_delay_ns: float = 2.0) -> None:
         self.rx_delay_ns, self.tx_delay_ns = rx_delay_ns, tx_delay_ns
-        super().__init__(RgmiiSignature())
+        super().__init__()
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -298,4 +306,4 @@ def _delayed(m: Module, name: str, pin: Value, ns: float) -> Signal:
     return out
 
 
-PHYS = {"gmii": GmiiPhy, "rgmii": RgmiiPhy, "mii": MiiPhy}
+PHYS: dict[str, type[_Phy]] = {"gmii": GmiiPhy, "rgmii": RgmiiPhy, "mii": MiiPhy}

@@ -185,20 +185,19 @@ class FrameSender(wiring.Component):
         m.d.comb += [
             header_byte.eq(Mux(is_reply, self.replies.header_byte, self.datagrams.header_byte)),
             payload_byte.eq(Mux(is_reply, self.replies.payload_byte, self.datagrams.payload_byte)),
-            kind.eq(self.replies.kind),
         ]
+        m.d.sync += kind.eq(self.replies.kind)
 
         at, left_of_template = Signal(range(len(templates.words))), Signal(6)
         left, has_payload, active = Signal(11), Signal(), Signal()
         # The frame takes its slot with it; a request of ARP follows.
         releases, asks_after = Signal(), Signal()
 
+        first, size = Signal.like(at), Signal.like(left_of_template)
+
         def begin(name: str) -> None:
-            m.d.sync += [
-                at.eq(templates.first[name]),
-                left_of_template.eq(templates.size[name]),
-                active.eq(1),
-            ]
+            m.d.comb += [first.eq(templates.first[name]), size.eq(templates.size[name])]
+            m.d.sync += active.eq(1)
             m.next = "SEND"
 
         hardware, key = Signal(48), Signal(32)
@@ -226,6 +225,8 @@ class FrameSender(wiring.Component):
         # memories are slow; a field's byte of the header, likewise; the byte that it stands for.
         there, from_payload, last = Signal(3), Signal(3), Signal(3)
         looked_up, template_word, from_header = Signal(9), Signal(9), Signal(8)
+        # The byte is one of `hardware`, or of `key`, which rotate.
+        of_hardware, of_key = Signal(), Signal()
         stored = Signal(8)
         this_last, in_template = Signal(), Signal()
         goes = Signal()
@@ -237,25 +238,19 @@ class FrameSender(wiring.Component):
             word.addr.eq(at),
             word.en.eq(goes),
         ]
-        field = Signal(6)
-        is_field = Signal()
         value = Signal(8)
-        m.d.comb += [
-            field.eq(template_word[:6]),
-            is_field.eq(template_word[8]),
-            value.eq(template_word[:8]),
-        ]
-        with m.If(is_field):
+        m.d.comb += value.eq(template_word[:8])
+        with m.If(of_hardware):
+            m.d.comb += value.eq(hardware[40:])
+        with m.Elif(of_key):
+            m.d.comb += value.eq(key[24:])
+        with m.Elif(template_word == (_FIELD | _SUM_UPPER)):
+            m.d.comb += value.eq(checksum[8:])
+        with m.Elif(template_word == (_FIELD | _SUM_LOWER)):
+            m.d.comb += value.eq(checksum[:8])
+        with m.Elif(template_word[8]):
             m.d.comb += value.eq(from_header)
-            with m.Switch(field):
-                with m.Case(_MAC):
-                    m.d.comb += value.eq(hardware[40:])
-                with m.Case(_ASKED):
-                    m.d.comb += value.eq(key[24:])
-                with m.Case(_SUM_UPPER):
-                    m.d.comb += value.eq(checksum[8:])
-                with m.Case(_SUM_LOWER):
-                    m.d.comb += value.eq(checksum[:8])
+        in_place = there[1] & ~from_payload[1]
         with m.If(goes):
             m.d.sync += [
                 there.eq(Cat(active, there)),
@@ -263,22 +258,26 @@ class FrameSender(wiring.Component):
                 last.eq(Cat(this_last, last)),
                 looked_up.eq(word.data),
                 template_word.eq(looked_up),
+                of_hardware.eq(in_place & (looked_up == (_FIELD | _MAC))),
+                of_key.eq(in_place & (looked_up == (_FIELD | _ASKED))),
                 from_header.eq(header_byte),
                 stored.eq(payload_byte),
                 out.valid.eq(there[2]),
                 out.payload.data.eq(Mux(from_payload[2], stored, value)),
                 out.payload.last.eq(last[2]),
             ]
-            with m.If(there[2] & ~from_payload[2] & is_field & (field == _MAC)):
+            with m.If(of_hardware):
                 m.d.sync += hardware.eq(hardware.rotate_left(8))
-            with m.If(there[2] & ~from_payload[2] & is_field & (field == _ASKED)):
+            with m.If(of_key):
                 m.d.sync += key.eq(key.rotate_left(8))
-            with m.If(active):
-                m.d.sync += active.eq(~this_last)
-                with m.If(in_template):
-                    m.d.sync += [at.eq(at + 1), left_of_template.eq(left_of_template - 1)]
-                with m.Else():
-                    m.d.sync += [payload_at.eq(payload_at + 1), left.eq(left - 1)]
+        with m.If(~active):
+            m.d.sync += [at.eq(first), left_of_template.eq(size)]
+        with m.Elif(goes):
+            m.d.sync += active.eq(~this_last)
+            with m.If(in_template):
+                m.d.sync += [at.eq(at + 1), left_of_template.eq(left_of_template - 1)]
+            with m.Else():
+                m.d.sync += [payload_at.eq(payload_at + 1), left.eq(left - 1)]
 
         # The bytes of the header that vary are 6 to 11, and of an echo to 15. They are summed up a
         # cycle after they were read, in the state HEADER, for which `in_header` stands: a register
@@ -292,6 +291,8 @@ class FrameSender(wiring.Component):
                 m.d.sync += key.eq(Cat(byte, key))
             with m.Elif(place < 12):
                 m.d.sync += length.eq(Cat(byte, length))
+        with m.Elif(in_header):
+            m.d.sync += total.eq(Mux(is_reply, icmp_start, udp_start))
 
         with m.FSM():
             with m.State("IDLE"):
@@ -299,11 +300,10 @@ class FrameSender(wiring.Component):
                 m.d.sync += [asks_after.eq(0), releases.eq(1)]
                 datagram = self.datagrams.full & (~asked | retries)
                 with m.If(self.replies.full & ~(turn & datagram)):
-                    m.d.sync += [is_reply.eq(1), turn.eq(1), total.eq(icmp_start)]
+                    m.d.sync += [is_reply.eq(1), turn.eq(1)]
                     m.next = "REPLY"
                 with m.Elif(datagram):
-                    m.d.sync += [is_reply.eq(0), turn.eq(0), total.eq(udp_start)]
-                    m.d.sync += in_header.eq(1)
+                    m.d.sync += [is_reply.eq(0), turn.eq(0), in_header.eq(1)]
                     m.next = "HEADER"
                 with m.Elif(self.report):
                     m.next = "REPORT"
@@ -335,30 +335,32 @@ class FrameSender(wiring.Component):
                 m.d.sync += left.eq(length - Mux(is_reply, Mux(kind == ECHO, 24, 20), 28))
                 # The address of a group in hardware (RFC 1112, 6.4): 23 bits of it are the group's.
                 m.d.sync += hardware.eq(Cat(key[:23], Const(0x01005E << 1, 25)))
+                m.d.sync += self.look.eq(1)
                 m.next = "LOOK"
                 with m.If(key[28:] == 0b1110):
+                    m.d.sync += self.look.eq(0)
                     m.next = "START"
                 with m.Elif(key[host_bits:] != self.address >> host_bits):
                     if self.gateway:
                         m.d.sync += key.eq(self.gateway)
                     else:
+                        m.d.sync += self.look.eq(0)
                         m.next = "DROP"
-            with m.State("LOOK"):
-                m.d.comb += self.look.eq(1)
-                with m.If(self.done):
-                    m.d.sync += [
-                        hardware.eq(self.mac),
-                        asks_after.eq(self.found & self.stale & may_ask),
-                    ]
-                    m.next = "START"
-                    with m.If(~self.found):
-                        m.next = "ASK"
-                        with m.If(is_reply & ~may_ask):
-                            m.next = "DROP"
-                        with m.Elif(asked & ~is_reply):
-                            m.next = "RETRY"
-                    with m.Elif(self.gone):
+            with m.State("LOOK"), m.If(self.done):
+                m.d.sync += [
+                    self.look.eq(0),
+                    hardware.eq(self.mac),
+                    asks_after.eq(self.found & self.stale & may_ask),
+                ]
+                m.next = "START"
+                with m.If(~self.found):
+                    m.next = "ASK"
+                    with m.If(is_reply & ~may_ask):
                         m.next = "DROP"
+                    with m.Elif(asked & ~is_reply):
+                        m.next = "RETRY"
+                with m.Elif(self.gone):
+                    m.next = "DROP"
             with m.State("RETRY"):
                 m.next = "ABSENT"
                 with m.If(timer != 0):

@@ -10,7 +10,7 @@ from amaranth.lib import wiring
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.datagrams import DatagramSignature
-from firm_hdl.ethernet.ipv4 import UDP, Ipv4Signature, check_state_layout
+from firm_hdl.ethernet.ipv4 import UDP, Ipv4Signature, check_state_layout, in_payload
 from firm_hdl.ethernet.slots import DATAGRAM, SlotWriterSignature
 from firm_hdl.ethernet.streams import add_word
 from firm_hdl.gateware.memories import BlockMemory
@@ -116,14 +116,15 @@ class UdpReceiver(wiring.Component):
         level = Signal(range(self.memory_bytes))
         waiting = Signal(range(self.most + 1))
         room, ours, ends, commit = Signal(), Signal(), Signal(), Signal()
-        is_source, in_payload, fits, empty = Signal(), Signal(), Signal(), Signal()
+        is_source, fits, empty = Signal(), Signal(), Signal()
         m.d.comb += [
             ours.eq(header.udp & header.first & ~header.more),
             is_source.eq((header.place >= 12) & (header.place < 16)),
-            in_payload.eq(header.place == 20),
             ring.write_at.eq(at),
             ring.write_word.eq(came.payload.data),
-            ring.writes.eq(came.valid & ~came.payload.end & ours & room & (is_source | in_payload)),
+            ring.writes.eq(
+                came.valid & ~came.payload.end & ours & room & (is_source | in_payload(header))
+            ),
             self.store.full.eq(waiting != 0),
             ring.read_at.eq(head),
             ring.reads.eq(self.store.moves),
@@ -201,17 +202,12 @@ class UdpForwarder(wiring.Component):
             Signal(name=name) for name in ("ours", "comes", "ends", "closes", "fits", "is_right")
         )
         m.d.comb += [
-            ours.eq(header.udp & header.first & ~header.more),
-            comes.eq(
-                came.valid
-                & ~came.payload.end
-                & (header.to_node | header.to_group)
-                & ours
-                & (header.place == 20)
-            ),
+            comes.eq(came.valid & ~came.payload.end & ours & in_payload(header)),
             right.eq(ends & self.right & fits),
         ]
         m.d.sync += [
+            # The header is there a cycle before the payload. A good end has it in `good`.
+            ours.eq(header.udp & header.first & ~header.more & (header.to_node | header.to_group)),
             # All bytes have come a cycle before `ends`.
             fits.eq(check.length == header.length),
             length.eq(check.length - HEADER_BYTES),
@@ -427,6 +423,7 @@ class UdpTransmitter(wiring.Component):
         payload, word, has_word = Signal(33), Signal(32), Signal()
         total, header_word = Signal(17), Signal(16)
         header_moves, header_done, moves = Signal(), Signal(), Signal()
+        taking = Signal()  # The state is TAKE.
         long, ended, begun, commits = Signal(), Signal(), Signal(), Signal()
         checksum, from_header, following = Signal(16), Signal(8), Signal(8)
         # A register has the byte of the header that comes next.
@@ -446,6 +443,10 @@ class UdpTransmitter(wiring.Component):
             slot.payload_write.eq(moves),
             slot.header_byte.eq(from_header),
             slot.kind.eq(DATAGRAM),
+            # The last word waits until the header, which comes with it, has been read.
+            came.ready.eq(taking & (~came.payload.last | header_done)),
+            moves.eq(came.valid & came.ready),
+            header_moves.eq(taking & came.valid & ~header_done),
         ]
         m.d.sync += [
             self.unfit.eq(0),
@@ -466,15 +467,10 @@ class UdpTransmitter(wiring.Component):
                 m.d.sync += [from_header.eq(halves[0][1]), header_done.eq(0), begun.eq(0)]
                 m.d.sync += [long.eq(0), rest.eq(came.payload.length)]
                 with m.If(came.valid & slot.free):
+                    m.d.sync += taking.eq(1)
                     m.next = "TAKE"
             with m.State("TAKE"):
-                # The last word waits until the header, which comes with it, has been read.
-                m.d.comb += [
-                    came.ready.eq(~came.payload.last | header_done),
-                    moves.eq(came.valid & came.ready),
-                    header_moves.eq(~header_done & came.valid),
-                    slot.header_write.eq(header_moves),
-                ]
+                m.d.comb += slot.header_write.eq(header_moves)
                 with m.If(header_moves):
                     m.d.sync += [
                         header_word.eq(Mux(step[0], Cat(Const(0, 8), from_header), from_header)),
@@ -494,6 +490,7 @@ class UdpTransmitter(wiring.Component):
                         long.eq(long | (count == MOST_PAYLOAD // WORD_BYTES)),
                     ]
                     with m.If(came.payload.last):
+                        m.d.sync += taking.eq(0)
                         m.next = "CARRY"
                         # `rest` bytes are missing with this word, so byte `rest` - 1 is its last
                         # one.

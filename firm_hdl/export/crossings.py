@@ -47,6 +47,8 @@ set_false_path -to [get_pins {PATH/rst_cdc/stage*_reg/PRE}]
 # If the memory is made of LUTs, its words cross long after they were written.
 set_max_delay -quiet -datapath_only -from [get_cells -quiet {PATH/storage_reg*}] \
 -to [get_cells -quiet {PATH/r_port_data*_reg[*]}] $period
+# So do those of a memory beside the FIFO, which then has their places.
+set_max_delay -quiet -datapath_only -from [get_cells -quiet {PATH_words_reg*}] $period
 """
 
 _SDC = """\

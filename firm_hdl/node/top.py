@@ -13,16 +13,10 @@ _LINK: dict[str, str] = {
     "frames_out": "m_axis",
     "datagrams_in": "udp_rx",
     "datagrams_out": "udp_tx",
-    "gmii": "gmii",
-    "rgmii": "rgmii",
-    "mii": "mii",
     "rx": "uart_rx",
     "tx": "uart_tx",
-    "nonce": "nonce",
-    "mm2s_aresetn": "mm2s_aresetn",
-    "s2mm_aresetn": "s2mm_aresetn",
 }
-"""How ports of links are called."""
+"""How ports of links are called; others have the names of their members."""
 
 _REGISTERS = {"axi": "s_axi", "interrupt": "irq"}
 """How those of registers are called; others have the names of their members."""
@@ -74,4 +68,4 @@ def _spelled(path: Path) -> Path:
         return ("m_axis", "tdest")
     if path[1] == "pieces_in":
         return ("s_axis", f"t{path[2]}")
-    return (_LINK[path[1]], *path[2:])
+    return (_LINK.get(path[1], path[1]), *path[2:])

@@ -6,14 +6,14 @@ from ipaddress import IPv4Address, IPv4Interface
 from typing import Any
 
 from amaranth.hdl import ClockDomain, DomainRenamer, Module, ResetSignal, Signal, Value
-from amaranth.lib import wiring
+from amaranth.lib import memory, wiring
 from amaranth.lib.cdc import PulseSynchronizer, ResetSynchronizer
 from amaranth.lib.fifo import AsyncFIFO
 from amaranth.lib.wiring import In, Out
 
 from firm_hdl.ethernet.datagrams import datagram_layout
 from firm_hdl.ethernet.edge import EthernetEdge, EthernetSettings
-from firm_hdl.ethernet.phy import PHYS, GmiiSignature, MiiSignature, RgmiiSignature
+from firm_hdl.ethernet.phy import PHYS
 from firm_hdl.gateware.packets.counters import add_counters
 from firm_hdl.gateware.packets.slice import StreamSlice
 from firm_hdl.node.control import ethernet_counter
@@ -43,8 +43,6 @@ checksum of its datagram is due, and those that it would send while it reads the
 
 _WORDS = 16
 """Words between two clock domains: enough for a word per cycle."""
-
-_PINS = {"gmii": GmiiSignature, "rgmii": RgmiiSignature, "mii": MiiSignature}
 
 
 class EthernetLink(wiring.Component):
@@ -87,7 +85,7 @@ class EthernetLink(wiring.Component):
     def medium(link: Link) -> dict[str, Any]:
         """Return the members that face the medium."""
         nonce = {"nonce": In(32)} if link.kind == "rtps" else {}
-        return {link.ethernet: Out(_PINS[link.ethernet]()), **nonce}
+        return {link.ethernet: Out(PHYS[link.ethernet].pin_signature()), **nonce}
 
     def elaborate(self, platform: object) -> Module:
         m = Module()
@@ -154,32 +152,26 @@ class EthernetLink(wiring.Component):
     def _cross(self, m: Module, phy: Any, network: EthernetEdge, upper: Any) -> dict[str, Signal]:
         """Put PHY and edge into a domain of their own; return the edge's strobes in `sync`."""
         domain = ClockDomain(_APART, local=True)
-        domain.clk = getattr(
-            phy.pins, "rxc" if self.description.link.ethernet == "rgmii" else "rx_clk"
-        )
+        domain.clk = getattr(phy.pins, phy.received_clock)
         m.domains += domain
-        m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART)
+        # A stage more than a FIFO has: else Yosys makes one register of both, and the positions of
+        # the FIFO wait for that of all resets, far away.
+        m.submodules.reset = ResetSynchronizer(ResetSignal(), domain=_APART, stages=3)
         m.submodules.phy = DomainRenamer(_APART)(phy)
         m.submodules.network = DomainRenamer(_APART)(network)
-        # Without registers between, it is too long a way from the edge into a FIFO, or back.
-        layout = datagram_layout(network.settings.word_bytes)
-        before, behind = StreamSlice(layout), StreamSlice(layout)
+        # Without registers between, it is too long a way from the edge into a FIFO.
+        before = StreamSlice(datagram_layout(network.settings.word_bytes))
         m.submodules.before = DomainRenamer(_APART)(before)
-        m.submodules.behind = DomainRenamer(_APART)(behind)
         wiring.connect(m, network.received, before.i)
-        wiring.connect(m, behind.o, network.sent)
-        ways = [
-            ("to_node", before.o, upper.datagrams_in, (_APART, "sync")),
-            ("to_edge", upper.datagrams_out, behind.i, ("sync", _APART)),
-        ]
+        ways = [("to_node", before.o, upper.datagrams_in)]
         if network.settings.is_split:
-            ways.append(("joined_to_node", network.joined, upper.joined_in, (_APART, "sync")))
-        for name, source, target, domains in ways:
+            ways.append(("joined_to_node", network.joined, upper.joined_in))
+        for name, source, target in ways:
             m.submodules[name] = fifo = AsyncFIFO(
                 width=len(Value.cast(source.payload)),
                 depth=_WORDS,
-                w_domain=domains[0],
-                r_domain=domains[1],
+                w_domain=_APART,
+                r_domain="sync",
             )
             m.d.comb += [
                 fifo.w_data.eq(source.payload),
@@ -189,6 +181,7 @@ class EthernetLink(wiring.Component):
                 target.valid.eq(fifo.r_rdy),
                 fifo.r_en.eq(target.ready),
             ]
+        self._cross_to_edge(m, upper.datagrams_out, network.sent)
         drops = {}
         for name in network.drops.shape().members:
             # At most one per frame, so a strobe has passed before the next one.
@@ -196,6 +189,37 @@ class EthernetLink(wiring.Component):
             m.d.comb += strobe.i.eq(network.drops[name])
             drops[name] = strobe.o
         return drops
+
+    def _cross_to_edge(self, m: Module, source: Any, target: Any) -> None:
+        """Carry datagrams into the domain of the edge.
+
+        The FIFO has the places of words in a memory, so that the address of what is read is a
+        register: from the positions of a FIFO through a wide memory it is too long a way.
+        """
+        m.submodules.to_edge = fifo = AsyncFIFO(
+            width=range(_WORDS)[-1].bit_length(), depth=_WORDS, w_domain="sync", r_domain=_APART
+        )
+        m.submodules.to_edge_words = words = memory.Memory(
+            shape=source.payload.shape(), depth=_WORDS, init=[]
+        )
+        write, read = words.write_port(), words.read_port(domain=_APART)
+        moves = Signal()
+        m.d.comb += [
+            fifo.w_en.eq(source.valid),
+            fifo.w_data.eq(write.addr),
+            write.en.eq(source.valid & fifo.w_rdy),
+            write.data.eq(source.payload),
+            source.ready.eq(fifo.w_rdy),
+            moves.eq(~target.valid | target.ready),
+            fifo.r_en.eq(moves),
+            read.addr.eq(fifo.r_data),
+            read.en.eq(moves),
+            target.payload.eq(read.data),
+        ]
+        with m.If(write.en):
+            m.d.sync += write.addr.eq(write.addr + 1)
+        with m.If(moves):
+            m.d[_APART] += target.valid.eq(fifo.r_rdy)
 
 
 def _fragment_bytes(description: Description) -> int:
