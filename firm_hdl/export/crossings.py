@@ -47,7 +47,10 @@ set_false_path -to [get_pins {PATH/rst_cdc/stage*_reg/PRE}]
 # If the memory is made of LUTs, its words cross long after they were written.
 set_max_delay -quiet -datapath_only -from [get_cells -quiet {PATH/storage_reg*}] \
 -to [get_cells -quiet {PATH/r_port_data*_reg[*]}] $period
-# So do those of a memory beside the FIFO, which then has their places.
+"""
+
+_XDC_WORDS = """\
+# So do those of the memory whose places the FIFO carries.
 set_max_delay -quiet -datapath_only -from [get_cells -quiet {PATH_words_reg*}] $period
 """
 
@@ -88,24 +91,29 @@ def constraints(design: Design, *, name: str, module: str) -> dict[str, str]:
     * `name`: of the files, ``NAME.xdc`` and ``NAME.sdc``.
     * `module`: the outermost module in Verilog.
     """
-    paths = list(_fifos(design, design.top, ()))
+    fifos = list(_fifos(design, design.top, ()))
     items = (item for each in design.modules.values() for item in each.items)
-    if not paths or any(isinstance(item, Cell) and item.kind in _ECP5 for item in items):
+    if not fifos or any(isinstance(item, Cell) and item.kind in _ECP5 for item in items):
         return {}
     names = {"name": name, "module": module}
-    xdc = [_XDC_FIFO.replace("PATH", "/".join(path)) for path in paths]
-    sdc = [_SDC_FIFO.replace("PATH", "|".join(path)) for path in paths]
+    xdc = [
+        (_XDC_FIFO + _XDC_WORDS * has_words).replace("PATH", "/".join(path))
+        for path, has_words in fifos
+    ]
+    sdc = [_SDC_FIFO.replace("PATH", "|".join(path)) for path, _ in fifos]
     return {
         f"{name}.xdc": "".join([_XDC.format(**names), *xdc]),
         f"{name}.sdc": "".join([_SDC.format(**names), *sdc]),
     }
 
 
-def _fifos(design: Design, module: Module, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Yield the paths of instances of `AsyncFIFO`."""
-    inside = {each.name: each.kind for each in module.items if isinstance(each, Cell)}
-    if {"produce_cdc", "consume_cdc", "rst_cdc"} <= inside.keys():
-        yield path
-    for name, kind in inside.items():
-        if kind in design.modules:
-            yield from _fifos(design, design.modules[kind], (*path, name))
+def _fifos(
+    design: Design, module: Module, path: tuple[str, ...]
+) -> Iterator[tuple[tuple[str, ...], bool]]:
+    """Yield the path of each `AsyncFIFO`, and whether a memory ``FIFO_words`` is beside it."""
+    for cell in module.items:
+        if isinstance(cell, Cell) and (inner := design.modules.get(cell.kind)):
+            inside, to = {each.name for each in inner.items}, (*path, cell.name)
+            if {"produce_cdc", "consume_cdc", "rst_cdc"} <= inside:
+                yield to, f"{cell.name}_words" in module.memories
+            yield from _fifos(design, inner, to)
