@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 import pytest
 from amaranth.hdl import ClockDomain, Instance, Module
 from amaranth.lib.fifo import AsyncFIFO
+from amaranth.lib.memory import Memory
 
 from firm_hdl import rtlil
 from firm_hdl.cli import main
@@ -633,19 +634,24 @@ def test_constraints_of_a_crossing_name_its_registers(tmp_path, kind):
                 assert any(map(shape.fullmatch, registers)), pattern
 
 
-def test_a_design_with_cells_of_another_fpga_has_no_constraints():
-    def files(add_cells):
+def test_constraints_are_those_of_the_memories_and_cells_of_a_design():
+    def files(add_cells, add_words=False):
         m = Module()
         m.domains.other = ClockDomain()
         m.submodules.fifo = fifo = AsyncFIFO(width=8, depth=4, w_domain="other")
         if add_cells:
             m.submodules.inner = inner = Module()
             inner.submodules.cell = Instance("DELAYG", i_A=fifo.r_data[0], o_Z=fifo.w_data[0])
+        if add_words:
+            m.submodules.fifo_words = words = Memory(shape=16, depth=4, init=[])
+            m.d.comb += fifo.w_data.eq(words.read_port().data)
         ports = [fifo.w_en, fifo.r_data, fifo.r_en]
         circuit = rtlil.rtlil_of(m, name="board_verilog", ports=ports)
         return constraints(rtlil.netlist_of(circuit), name="board", module="board_verilog")
 
     assert files(False).keys() == {"board.xdc", "board.sdc"} and not files(True)
+    found = [files(False, each)["board.xdc"].count("{fifo_words_reg*}") for each in (False, True)]
+    assert found == [0, 1]
 
 
 @pytest.mark.parametrize("periods", ["4.0 8.0", "8.0 4.0"])
