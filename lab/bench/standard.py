@@ -133,7 +133,9 @@ def covering_group(folder: Path) -> Group:
     types = {path.stem: tuple(read_chosen(path)) for path in sorted(folder.glob("*.txt"))}
     if not types:
         raise BenchError(f"'{folder}' has no covering sets")
-    return Group(title="covering sets", types=types, devices=("ecp5",), stated=None)
+    return Group(
+        title="covering sets", types=types, devices=("ecp5",), seeds=(1, 2, 3), stated=None
+    )
 
 
 def group_tasks(group: Group, **options: Any) -> Iterator[BenchTask]:
