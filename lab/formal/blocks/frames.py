@@ -21,18 +21,16 @@ def _ipv4(scene: Scene) -> None:
     inner = scene.inside(block)["Ipv4Receiver"]
     came, out, header = block.payloads, block.datagrams.bytes, block.datagrams.header
     begun, pause = Signal(name="begun"), Signal(range(FRAME_GAP + 1), name="pause")
-    kept, is_ipv4 = Signal(name="kept_is_ipv4"), scene.free(1, "is_ipv4")
     ends = came.valid & came.payload.end
     m.d.comb += [
         came.valid.eq(scene.free(1, "valid") & (pause == 0)),
         came.payload.data.eq(scene.free(8, "byte")),
         came.payload.end.eq(scene.free(1, "end") & begun),
         came.payload.good.eq(scene.free(1, "good") & came.payload.end),
-        block.is_ipv4.eq(Mux(begun, kept, is_ipv4)),
         block.to_node.eq(scene.free(1, "to_node")),
         block.to_group.eq(scene.free(1, "to_group")),
     ]
-    m.d.sync += [kept.eq(block.is_ipv4), pause.eq(Mux(ends, FRAME_GAP, pause - (pause != 0)))]
+    m.d.sync += pause.eq(Mux(ends, FRAME_GAP, pause - (pause != 0)))
     m.d.sync += begun.eq(~ends & (begun | came.valid))
     count, is_byte = Signal(12, name="count"), out.valid & ~out.payload.end
     m.d.sync += count.eq(Mux(out.valid & out.payload.end, 0, count + is_byte))
@@ -47,7 +45,8 @@ def _ipv4(scene: Scene) -> None:
     for always in (
         (pause == 0) | ~begun,
         begun | ((at == 0) & in_header),
-        (at == 0) | (begun & kept),
+        (at == 0) | begun,
+        (at < 2) | (inner.last_word == (words - 1)[:4]),
         in_header | (at != 0),
         ~in_header | (at == 0) | ((words >= 5) & (at < Value.cast(words << 2))),
         ~is_over | (pause == FRAME_GAP),
