@@ -11,10 +11,10 @@ from firm_hdl.node.rtps.names import digest_of
 from firm_hdl.node.rtps.state import FIXED_READERS, FIXED_WRITERS, GRAPH, State, is_for_writer
 from firm_hdl.rtps.wire.guid import PUBLICATIONS_WRITER
 
-__all__ = ["compare", "find", "matching", "most_matches"]
+__all__ = ["compare", "find", "matching"]
 
 
-def most_matches(link: Link) -> int:
+def _most_matches(link: Link) -> int:
     """Return how many endpoints of one peer are matched: half of them, if others may come."""
     return link.matches if link.peers == 1 else (link.matches + 1) // 2
 
@@ -89,7 +89,7 @@ def matching(m: Module, s: State, compared: tuple[Signal, ...]) -> None:
             m.d.sync += [row.valid.eq(0), s.has_room.eq(1)]
             m.next = "STORE_EVENT"
         with m.Elif(~is_gone & ~s.hit & announced.is_endpoint & has_same & fits):
-            fits_in = s.has_free & (s.held < most_matches(s.engine.description.link))
+            fits_in = s.has_free & (s.held < _most_matches(s.engine.description.link))
             m.d.comb += s.engine.unsent.eq(~fits_in)
             with m.If(~fits_in):
                 m.d.sync += s.refused.bit_select(s.peer, 1).eq(1)
